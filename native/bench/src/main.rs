@@ -1,0 +1,2 @@
+//! Lisle: bench.
+fn main() {}

@@ -1,0 +1,322 @@
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+
+use super::{FiberTable, Yarn, YarnPoint};
+use crate::sampling::{hash_combine, normal_from_hash, unit_from_hash};
+
+/// Turns per unit of length coordinate of one curve: plies, fibers, and migration periods (all ≥ 0; signs are the yarn's).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist {
+    /// Turns of the plies around the yarn.
+    pub ply: f64,
+    /// Turns of the fibers around the ply.
+    pub fiber: f64,
+    /// Migration periods.
+    pub migration: f64,
+    /// Periods along a closed curve, after which they repeat; `None` for an open one.
+    pub closed_periods: Option<u32>,
+}
+
+impl Twist {
+    /// Twist of a curve of rest length `total_length` and mean rest radius `reference_radius` (same unit).
+    ///
+    /// A closed curve gets whole numbers of turns and periods, so that it has no seam.
+    pub fn new(yarn: &Yarn, total_length: f64, reference_radius: f64, closed: bool) -> Self {
+        let [ply, fiber, migration] = Self::turns(yarn, total_length, reference_radius, closed);
+        Self {
+            ply: ply / total_length,
+            fiber: fiber / total_length,
+            migration: migration / total_length,
+            closed_periods: closed.then_some(migration as u32),
+        }
+    }
+
+    /// Turns of plies, fibers and migration over the whole curve.
+    pub fn turns(yarn: &Yarn, total_length: f64, reference_radius: f64, closed: bool) -> [f64; 3] {
+        let table_length = total_length * yarn.outer_radius() / reference_radius;
+        let turns = [
+            table_length / yarn.ply_twist.abs(),
+            table_length / yarn.fiber_twist.abs(),
+            table_length / yarn.migration_period(),
+        ];
+        if closed { turns.map(|turns| turns.round().max(1.0)) } else { turns }
+    }
+}
+
+/// What a fiber is during one migration period [WuYuksel2018 §3.1].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FiberType {
+    /// Wanders between R_min and its own radius (Eq. 2).
+    Migration,
+    /// The same with a larger outer radius.
+    Loop,
+    /// Leaves the ply and ends in the open.
+    Hair,
+}
+
+/// Which fiber: the hash of these decides its type in each period.
+#[derive(Clone, Copy, Debug)]
+pub struct Fiber {
+    /// Hash of object and curve.
+    pub seed: u32,
+    /// Ply, 0 ≤ ply < K.
+    pub ply: u32,
+    /// Rank in the ply's [`FiberTable`].
+    pub index: u32,
+}
+
+/// A point of a ply's centre line; rates are per segment parameter t.
+#[derive(Clone, Copy, Debug)]
+pub struct PlyPoint {
+    /// Centre, object space.
+    pub position: DVec3,
+    /// d position / dt.
+    pub velocity: DVec3,
+    /// Unit direction from the yarn centre to the ply, N_ply.
+    pub radial: DVec3,
+    /// tangent × radial, B_ply.
+    pub tangential: DVec3,
+    /// d radial / dt.
+    pub radial_rate: DVec3,
+    /// d tangential / dt.
+    pub tangential_rate: DVec3,
+}
+
+/// A point of a fiber's centre line.
+#[derive(Clone, Copy, Debug)]
+pub struct FiberPoint {
+    /// Position, object space.
+    pub position: DVec3,
+    /// d position / dt.
+    pub velocity: DVec3,
+    /// What the fiber is here.
+    pub kind: FiberType,
+}
+
+/// Centre of a ply [WuYuksel2018, equation after Fig. 3], with N_ply = N for a yarn of one ply.
+pub fn ply_point(yarn: &Yarn, twist: &Twist, at: &YarnPoint, ply: u32) -> PlyPoint {
+    let (angle, angle_rate) = if yarn.plies > 1 {
+        let sign = yarn.ply_twist.signum();
+        let start = f64::from(ply) / f64::from(yarn.plies);
+        (TAU * (sign * at.length * twist.ply + start), TAU * sign * at.length_rate * twist.ply)
+    } else {
+        (0.0, 0.0)
+    };
+    let (sin, cos) = angle.sin_cos();
+    let radial = at.normal * cos + at.binormal * sin;
+    let tangential = at.binormal * cos - at.normal * sin;
+    let radial_rate = tangential * angle_rate + at.normal_rate * cos + at.binormal_rate * sin;
+    let tangential_rate = -radial * angle_rate - at.normal_rate * sin + at.binormal_rate * cos;
+    let distance = yarn.ply_distance() / yarn.outer_radius();
+    PlyPoint {
+        position: at.position + radial * (distance * at.radius),
+        velocity: at.velocity + radial * (distance * at.radius_rate) + radial_rate * (distance * at.radius),
+        radial,
+        tangential,
+        radial_rate,
+        tangential_rate,
+    }
+}
+
+/// Relative radius of a fiber within a period, and the angle by which it departs from the regular twist.
+struct Profile {
+    radius: f64,
+    /// d radius / d phase.
+    radius_rate: f64,
+    /// Turns, in the direction of the twist.
+    angle_turns: f64,
+    angle_rate: f64,
+    kind: FiberType,
+}
+
+/// Narrowest and widest hair, as a share of its period.
+const HAIR_WIDTH: (f64, f64) = (0.02, 0.45);
+
+/// `phase` runs from 0 to 1 over a period, whose ends lie at the least radius: types join there to first order.
+///
+/// Eq. 2 with its phase moved by half a period. A hair leaves at the middle, where a migrating fiber is
+/// outermost, from that radius rather than from R_min^hair, so that it stays attached; its tip lies at R_min^hair + R_span.
+fn profile(yarn: &Yarn, periods_per_turn: f64, fiber_radius: f64, phase: f64, hash: u32) -> Profile {
+    let wave = 0.5 - 0.5 * (TAU * phase).cos();
+    let wave_rate = PI * (TAU * phase).sin();
+    let inner = fiber_radius * yarn.r_min;
+    let between = |outer: f64, kind| Profile {
+        radius: inner + (outer - inner) * wave,
+        radius_rate: (outer - inner) * wave_rate,
+        angle_turns: 0.0,
+        angle_rate: 0.0,
+        kind,
+    };
+    let variate = |v: super::Variate, key| v.mean + v.deviation * normal_from_hash(hash_combine(hash, key));
+    let (loop_chance, hair_chance) = yarn.flyaway_chances();
+    let fly = &yarn.flyaways;
+    let choice = unit_from_hash(hash);
+    if choice < loop_chance {
+        let outer = variate(fly.loop_r_max, 1) / yarn.mean_axis();
+        return between(outer.max(fiber_radius), FiberType::Loop);
+    }
+    if choice < loop_chance + hair_chance {
+        let span = variate(fly.hair_z_span, 2);
+        let width = (span.abs() / yarn.migration_period()).clamp(HAIR_WIDTH.0, HAIR_WIDTH.1);
+        let direction = 1.0_f64.copysign(span);
+        let along = (phase - 0.5) * direction / width;
+        if (0.0..=1.0).contains(&along) {
+            let tip = (variate(fly.hair_r_min, 3) + variate(fly.hair_r_span, 4)) / yarn.mean_axis();
+            let rise = tip.max(fiber_radius) - fiber_radius;
+            let turns = variate(fly.hair_theta_span, 5) / TAU;
+            return Profile {
+                radius: fiber_radius + rise * along,
+                radius_rate: rise * direction / width,
+                angle_turns: direction * along * turns - (phase - 0.5) / periods_per_turn,
+                angle_rate: turns / width - 1.0 / periods_per_turn,
+                kind: FiberType::Hair,
+            };
+        }
+    }
+    between(fiber_radius, FiberType::Migration)
+}
+
+/// A fiber's point [WuYuksel2018 Eq. 1, 2 and §3.1].
+pub fn fiber_point(yarn: &Yarn, twist: &Twist, table: &FiberTable, at: &YarnPoint, fiber: Fiber) -> FiberPoint {
+    let ply = ply_point(yarn, twist, at, fiber.ply);
+    let index = fiber.index as usize;
+    let ply_hash = hash_combine(fiber.seed, fiber.ply);
+
+    // Every ply is turned by its own angle and phase, so that plies are not copies of each other.
+    let phase = at.length * twist.migration
+        + table.migration_turns[index]
+        + unit_from_hash(hash_combine(ply_hash, 0x0fff_fff1));
+    let mut period = phase.floor() as u32;
+    if let Some(count) = twist.closed_periods {
+        period %= count.max(1);
+    }
+    let period_hash = hash_combine(hash_combine(ply_hash, fiber.index), period);
+    let periods_per_turn = twist.migration / twist.fiber;
+    let shape = profile(yarn, periods_per_turn, table.radius[index], phase.fract(), period_hash);
+    let phase_rate = at.length_rate * twist.migration;
+
+    let sign = yarn.fiber_twist.signum();
+    let angle = TAU
+        * (sign * (at.length * twist.fiber + shape.angle_turns)
+            + table.angle_turns[index]
+            + unit_from_hash(hash_combine(ply_hash, 0x0fff_fff2)));
+    let angle_rate = TAU * sign * (at.length_rate * twist.fiber + shape.angle_rate * phase_rate);
+
+    let scale = at.radius / yarn.outer_radius();
+    let scale_rate = at.radius_rate / yarn.outer_radius();
+    let (sin, cos) = angle.sin_cos();
+    let (short, long) = (yarn.ellipse_short, yarn.ellipse_long);
+    let spoke = ply.radial * (cos * short) + ply.tangential * (sin * long);
+    let spoke_rate = ply.radial_rate * (cos * short)
+        + ply.tangential_rate * (sin * long)
+        + (ply.tangential * (cos * long) - ply.radial * (sin * short)) * angle_rate;
+    FiberPoint {
+        position: ply.position + spoke * (shape.radius * scale),
+        velocity: ply.velocity
+            + spoke_rate * (shape.radius * scale)
+            + spoke * (shape.radius * scale_rate + shape.radius_rate * phase_rate * scale),
+        kind: shape.kind,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::curve::{Knot, Segment};
+    use super::*;
+    use crate::yarn::PRESET_NAMES;
+
+    const TURNS: f64 = 40.0;
+
+    /// A helix with a radius that varies and knots at uneven distances; `knot(i)` for any integer i.
+    fn knot(i: i32) -> Knot {
+        let a = f64::from(i) * 0.31 + 0.11 * f64::from(i).sin();
+        let position = DVec3::new(a.cos(), a.sin(), 0.2 * a);
+        let tangent = DVec3::new(-a.sin(), a.cos(), 0.2).normalize();
+        let out = DVec3::new(a.cos(), a.sin(), 0.0);
+        let normal = (out - tangent * out.dot(tangent)).normalize();
+        Knot { position, normal, length: a * 1.04_f64.sqrt() + 5.0, radius: 0.1 + 0.02 * (0.7 * f64::from(i)).cos() }
+    }
+
+    fn segment(i: i32) -> Segment {
+        Segment::new([knot(i - 1), knot(i), knot(i + 1), knot(i + 2)])
+    }
+
+    #[test]
+    fn positions_and_tangents_are_continuous_across_segments() {
+        for name in PRESET_NAMES {
+            let yarn = Yarn::preset(name).expect(name);
+            let table = FiberTable::new(&yarn);
+            let twist = Twist::new(&yarn, TURNS, 0.1, false);
+            for i in 1..40 {
+                for index in 0..yarn.fibers_per_ply {
+                    let fiber = Fiber { seed: 7, ply: i as u32 % yarn.plies, index };
+                    let a = fiber_point(&yarn, &twist, &table, &segment(i).at(1.0), fiber);
+                    let b = fiber_point(&yarn, &twist, &table, &segment(i + 1).at(0.0), fiber);
+                    assert!(a.position.distance(b.position) < 1e-5 * 0.1, "{name} segment {i} fiber {index}");
+                    assert!(a.velocity.angle_between(b.velocity) < 1e-5, "{name} segment {i} fiber {index}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn velocity_is_the_derivative_of_position() {
+        let yarn = Yarn::preset("cotton-1").expect("preset");
+        let table = FiberTable::new(&yarn);
+        let twist = Twist::new(&yarn, TURNS, 0.1, false);
+        let (mut worst, mut seen) = (0.0_f64, [0; 3]);
+        for i in 1..60 {
+            for index in 0..yarn.fibers_per_ply {
+                let fiber = Fiber { seed: 3, ply: 1, index };
+                let h = 1e-6;
+                let point = |t: f64| fiber_point(&yarn, &twist, &table, &segment(i).at(t), fiber);
+                let (a, b, c) = (point(0.4 - h), point(0.4), point(0.4 + h));
+                if a.kind != c.kind || a.position.distance(c.position) > 1e-4 {
+                    continue; // A root or a tip lies between: no derivative there.
+                }
+                seen[b.kind as usize] += 1;
+                let difference = (c.position - a.position) / (2.0 * h);
+                worst = worst.max(difference.distance(b.velocity) / b.velocity.length());
+            }
+        }
+        assert!(seen.iter().all(|n| *n > 50), "every type is met: {seen:?}");
+        assert!(worst < 1e-6, "relative error {worst}");
+    }
+
+    #[test]
+    fn a_closed_yarn_has_no_seam() {
+        let yarn = Yarn::preset("rayon-2").expect("preset");
+        let table = FiberTable::new(&yarn);
+        let total = 17.3;
+        let at = |length: f64| {
+            let mut point = segment(3).at(0.5);
+            point.length = length;
+            point
+        };
+        let gap = |twist: &Twist| {
+            (0..yarn.fibers_per_ply)
+                .map(|index| {
+                    let fiber = Fiber { seed: 1, ply: 0, index };
+                    let a = fiber_point(&yarn, twist, &table, &at(0.0), fiber);
+                    let b = fiber_point(&yarn, twist, &table, &at(total), fiber);
+                    a.position.distance(b.position)
+                })
+                .fold(0.0, f64::max)
+        };
+        assert!(gap(&Twist::new(&yarn, total, 0.1, true)) < 1e-10);
+        // The check sees a seam where there is one.
+        assert!(gap(&Twist::new(&yarn, total, 0.1, false)) > 1e-3);
+    }
+
+    #[test]
+    fn flyaway_densities_match_the_table() {
+        for name in PRESET_NAMES {
+            let yarn = Yarn::preset(name).expect(name);
+            let (loops, hairs) = yarn.flyaway_chances();
+            let per_length = f64::from(yarn.fibers_per_ply) / yarn.migration_period();
+            assert!((loops * per_length - yarn.flyaways.loop_density).abs() < 1e-9, "{name}");
+            assert!((hairs * per_length - yarn.flyaways.hair_density).abs() < 1e-9, "{name}");
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! The procedural yarn: plies twisted around a yarn, fibers twisted around each ply [Zhao2016; WuYuksel2018 §2.2, §3.1].
+
+mod curve;
+mod fiber;
+mod parameters;
+mod presets;
+mod table;
+
+pub use curve::{Knot, Segment, YarnPoint};
+pub use fiber::{Fiber, FiberPoint, FiberType, PlyPoint, Twist, fiber_point, ply_point};
+pub use parameters::{Flyaways, Variate, Yarn, YarnError};
+pub use presets::PRESET_NAMES;
+pub use table::{FiberTable, acceptance, radial_density};

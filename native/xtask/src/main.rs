@@ -1,0 +1,2 @@
+//! Lisle: xtask.
+fn main() {}
