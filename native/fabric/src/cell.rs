@@ -7,7 +7,7 @@ use crate::pattern::Pattern;
 use glam::{DVec2, DVec3};
 
 /// Control points of one stitch, from the middle of one sinker arc to just before the next.
-pub(crate) const POINTS_PER_STITCH: usize = 16;
+pub const POINTS_PER_STITCH: usize = 20;
 
 /// One repeat of a pattern: course after course, wale after wale, [`POINTS_PER_STITCH`] points a stitch.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ impl Cell {
             for column in 0..pattern.columns() {
                 let key = key_points(pattern, row, column);
                 let origin = DVec3::new(column as f64, row as f64, 0.0);
-                points.extend(resample(&key, scale).map(|point| (point + origin * scale)));
+                points.extend(resample(&key, scale).map(|point| point + origin * scale));
             }
         }
         Self {
@@ -66,13 +66,13 @@ fn key_points(pattern: &Pattern, row: usize, column: usize) -> Vec<DVec3> {
     let left = sign(row, column + columns - 1);
     let right = sign(row, column + 1);
     let leg = [
-        (0.160, -0.22, -own),                // the foot, behind (knit) the legs of the loop below
-        (0.375, 0.00, 0.0),                  // k1
-        (0.330, 0.33, own),                  // in front of the head of the loop below
-        (0.250, 0.50, 0.5 * (own + above)),  // the middle of the leg
-        (0.170, 0.72, above),                // in front of the feet of the loop above
-        (0.125, 1.00, 0.0),                  // k2
-        (0.300, 1.30, -above),               // the head, behind the legs of the loop above
+        (0.160, -0.22, -own),               // the foot, behind (knit) the legs of the loop below
+        (0.375, 0.00, 0.0),                 // k1
+        (0.330, 0.33, own),                 // in front of the head of the loop below
+        (0.250, 0.50, 0.5 * (own + above)), // the middle of the leg
+        (0.170, 0.72, above),               // in front of the feet of the loop above
+        (0.125, 1.00, 0.0),                 // k2
+        (0.300, 1.30, -above),              // the head, behind the legs of the loop above
     ];
     let mut points = vec![DVec3::new(0.0, -0.35, -0.5 * (left + own))]; // k0
     points.extend(leg.iter().map(|&(x, y, z)| DVec3::new(x, y, z)));

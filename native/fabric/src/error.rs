@@ -26,4 +26,62 @@ pub enum Error {
         /// The symbol found.
         symbol: char,
     },
+    /// Cloth needs courses and wales.
+    #[error("{courses} courses of {wales} wales: cloth needs at least one of each (three wales in the round)")]
+    EmptyCloth {
+        /// Courses asked for.
+        courses: usize,
+        /// Wales asked for.
+        wales: usize,
+    },
+    /// In the round, the last wale meets the first.
+    #[error("{wales} wales in the round do not hold a whole number of the pattern's {columns} columns")]
+    BrokenRound {
+        /// Wales asked for.
+        wales: usize,
+        /// Columns of the pattern.
+        columns: usize,
+    },
+    /// Points are counted with 32 bits.
+    #[error("{courses} courses of {wales} wales have more than 2^32 - 1 control points")]
+    TooManyPoints {
+        /// Courses asked for.
+        courses: usize,
+        /// Wales asked for.
+        wales: usize,
+    },
+    /// The yarn must have a thickness.
+    #[error("yarn radius {value_m} m: it must be finite and positive")]
+    YarnRadius {
+        /// The radius given, in metres.
+        value_m: f64,
+    },
+    /// A surface must have a finite position and a normal wherever there is yarn.
+    #[error("course {course}, point {index}: the surface has no finite position or no normal at u = {u}, v = {v}")]
+    Surface {
+        /// Course of the cloth.
+        course: usize,
+        /// Control point within the course.
+        index: usize,
+        /// Where on the surface.
+        u: f64,
+        /// Where on the surface.
+        v: f64,
+    },
+    /// A sleeve needs a usable centre line.
+    #[error("centre line, point {index}: {reason}")]
+    CentreLine {
+        /// The point at fault.
+        index: usize,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// A garment needs enough points for its smallest pieces.
+    #[error("a garment of {points} control points is too coarse: at least {least} are needed")]
+    CoarseGarment {
+        /// Control points asked for.
+        points: usize,
+        /// The least possible number.
+        least: usize,
+    },
 }
