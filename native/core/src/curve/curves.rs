@@ -156,7 +156,10 @@ impl Curves {
             Basis::CatmullRom | Basis::Linear | Basis::BSpline => (n >= 3, "at least 3".to_owned()),
             Basis::Bezier if closed => (n >= 3 && n % 3 == 0, "3, 6, 9, … points".to_owned()),
             Basis::Bezier => (n >= 4 && n % 3 == 1, "4, 7, 10, … points".to_owned()),
-            Basis::Nurbs(nurbs) => (n >= nurbs.order.max(2), format!("at least its order, {}", nurbs.order)),
+            Basis::Nurbs(nurbs) => {
+                let least = nurbs.order.max(if closed { 3 } else { 2 });
+                (n >= least, format!("at least {least} for its order, {}", nurbs.order))
+            },
         };
         if !enough {
             let kind = format!("{} {}", if closed { "closed" } else { "open" }, basis.name());
@@ -188,6 +191,10 @@ fn validate_nurbs(nurbs: &Nurbs, points: usize, closed: bool) -> Result<(), Stri
         if let Some(i) = weights.iter().position(|w| !(w.is_finite() && *w > 0.0)) {
             return Err(format!("weight {i} is {}: it must be finite and positive", weights[i]));
         }
+    }
+    let bezier = matches!(nurbs.knots, KnotMode::Bezier | KnotMode::EndpointBezier);
+    if bezier && closed && points % (order - 1) != 0 {
+        return Err(format!("of order {order} is closed with Bézier knots: {points} points are not a multiple of {}", order - 1));
     }
     if let KnotMode::Explicit(knots) = &nurbs.knots {
         let expected = nurbs.knot_count(points, closed);

@@ -21,7 +21,7 @@ pub enum KnotMode {
     Normal,
     /// Uniform knots, clamped: an open curve starts and ends at its end points.
     Endpoint,
-    /// Inner knots of multiplicity `order - 1`: Bézier segments.
+    /// Inner knots of multiplicity `order - 1`: Bézier segments. A closed curve needs a multiple of `order - 1` points.
     Bezier,
     /// Bézier segments, clamped.
     EndpointBezier,

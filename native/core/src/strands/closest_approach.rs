@@ -3,17 +3,15 @@
 //! # How it works
 //! Yarns of real cloth touch: at a contact, center lines are two radii apart. For a sample of the knots the distance
 //! to the nearest other stretch of yarn is looked up in a grid of knots; what lies close along the yarn itself does
-//! not count. A low quantile of these distances is the contact distance: robust against a few intersecting strands,
-//! and below the distances of knots that lie between contacts.
+//! not count. The median of these distances is the contact distance. On simulated cloth of a known radius it is right
+//! within 6 % (stockinette and satin, at rest and stretched); in an open weave, whose yarns lie free between
+//! contacts, it is too large.
 
 use super::Layout;
 use crate::curve::to_f64;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
-
-/// The part of the sampled knots that lies closer to another stretch than the contact distance.
-const QUANTILE: f64 = 0.1;
 
 /// A point of the same curve counts as another stretch if the way along the yarn is this many times its distance.
 const DETOUR: f64 = 4.0;
@@ -31,7 +29,6 @@ const RINGS: i32 = 6;
 const OCCUPANCY: f64 = 8.0;
 
 /// Half the typical closest distance between center lines of different stretches; `None` if too few come close.
-/// `lengths` is the polyline's length up to each knot.
 pub(super) fn radius_by_closest_approach(positions: &[[f32; 3]], layout: Layout<'_>) -> Option<f64> {
     let lines = Lines::new(positions, layout);
     let grid = Grid::new(&lines);
@@ -42,9 +39,9 @@ pub(super) fn radius_by_closest_approach(positions: &[[f32; 3]], layout: Layout<
     if (distances.len() as f64) < (MIN_FOUND * samples as f64).max(1.0) {
         return None;
     }
-    distances.sort_by(f64::total_cmp);
-    let contact = distances[(QUANTILE * (distances.len() - 1) as f64).round() as usize];
-    Some(0.5 * contact)
+    let middle = distances.len() / 2;
+    let (_, contact, _) = distances.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(0.5 * *contact)
 }
 
 /// Mean distance of neighbouring knots.
