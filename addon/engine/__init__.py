@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine: when Blender asks for a picture, and what it gets. Imports `export` and `core`."""
+
+import bpy
+
+from . import job
+from .engine import LisleRenderEngine
+
+
+def register():
+    bpy.utils.register_class(LisleRenderEngine)
+    job.register()
+
+
+def unregister():
+    job.unregister()
+    bpy.utils.unregister_class(LisleRenderEngine)

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The engine that Blender talks to.
+
+Nothing may leave `render` but a written result: an exception, or no result, makes Blender crash when it saves the
+frame. So whatever happens, a full-size result is delivered, and then an error report stops the job before Blender saves it.
+"""
+
+import traceback
+
+import bpy
+
+from ..core.errors import Cancelled, LisleError
+from . import job
+from .frame import draw
+from .passes import register_passes, write_passes
+
+
+class LisleRenderEngine(bpy.types.RenderEngine):
+    """Draws curves as yarn made of plies and fibers."""
+
+    bl_idname = "LISLE"
+    bl_label = "Lisle"
+    bl_use_postprocess = True
+    bl_use_eevee_viewport = True
+
+    def update_render_passes(self, scene, view_layer):
+        register_passes(self, scene, view_layer)
+
+    def render(self, depsgraph):
+        notes = []
+        result, error = None, None
+        try:
+            # Blender cuts the rectangle to the border, exactly as it will use it.
+            result = self.begin_result(
+                0, 0, self.resolution_x, self.resolution_y, layer=depsgraph.view_layer.name
+            )
+            image = draw(self, depsgraph, (result.resolution_x, result.resolution_y), notes.append)
+            write_passes(result, image)
+        except BaseException as caught:
+            error = caught
+        if result is not None:
+            self.end_result(result)
+        for sentence in job.not_said_before(notes):
+            self.report({"INFO"}, f"Lisle: {sentence}")
+        message = _message(error)
+        if message is not None:
+            self.report({"ERROR"}, f"Lisle: {message}")
+
+
+def _message(error):
+    """What to tell the user about an exception; None if there is nothing to tell."""
+    if error is None or isinstance(error, Cancelled):
+        return None
+    if isinstance(error, LisleError):
+        return str(error)
+    traceback.print_exception(error)
+    return f"{type(error).__name__}: {error} (this is a bug in Lisle, the console has its trace)"

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One view layer at one frame, from Blender's scene to the native image."""
+
+import numpy as np
+
+from .. import native
+from ..core.camera import border_pixels
+from ..core.errors import Cancelled, LisleError, SceneError
+from ..export.camera import native_camera
+from ..export.scene import collect
+from ..export.world import ambient_radiance
+from .job import REST_SHAPES
+from .renderer import drop, renderer
+
+
+def draw(engine, depsgraph, size, note):
+    """The native image of a view layer, of `size` = (w, h) pixels: the border's size if there is one.
+
+    Raises LisleError with a message for the user; Cancelled if the user stopped it.
+    """
+    lisle = native.module()
+    try:
+        return _draw(lisle, engine, depsgraph, size, note)
+    except lisle.Cancelled as error:
+        raise Cancelled from error
+    except lisle.DeviceError as error:
+        drop()
+        raise LisleError(str(error)) from error
+    except lisle.Error as error:
+        raise LisleError(str(error)) from error
+
+
+def _draw(lisle, engine, depsgraph, size, note):
+    frame_size = engine.resolution_x, engine.resolution_y
+    region = _region(depsgraph.scene.render, frame_size, size)
+    scene = _native_scene(lisle, engine, depsgraph, frame_size, note)
+    settings, render = depsgraph.scene.lisle, depsgraph.scene.render
+
+    def progress(fraction):
+        engine.update_progress(fraction)
+        return not engine.test_break()
+
+    engine.update_stats("", "Drawing")
+    return renderer(lisle).render(
+        scene,
+        size=frame_size,
+        region=region,
+        samples=settings.samples,
+        shading=settings.shading,
+        occlusion=settings.occlusion,
+        lod=settings.lod,
+        seed=settings.seed,
+        transparent=render.film_transparent,
+        progress=progress,
+    )
+
+
+def _region(render, frame_size, size):
+    """The border in pixels, or None for the whole frame."""
+    if not render.use_border:
+        return None
+    border = (render.border_min_x, render.border_min_y, render.border_max_x, render.border_max_y)
+    x0, y0, x1, y1 = border_pixels(border, frame_size)
+    if (x1 - x0, y1 - y0) != size:
+        raise SceneError(f"The render border of {size[0]} x {size[1]} pixels is not at {(x0, y0, x1, y1)} as expected")
+    return x0, y0, x1, y1
+
+
+def _native_scene(lisle, engine, depsgraph, frame_size, note):
+    if depsgraph.scene.render.use_multiview:
+        raise SceneError("Stereoscopy is not supported: turn it off in the output properties")
+    engine.update_stats("", "Reading curves")
+    content = collect(lisle, depsgraph, note)
+    if not content.placements:
+        note("the view layer shows no curves")
+    at_rest = REST_SHAPES.find(lisle, engine, depsgraph, content)
+    camera = engine.camera_override or depsgraph.scene.camera
+    scene = lisle.Scene(
+        camera=native_camera(lisle, camera, depsgraph, frame_size),
+        lights=content.lights,
+        ambient=ambient_radiance(depsgraph.scene.world, note),
+    )
+    parts = {key: _parts(lisle, geometry, at_rest[key]) for key, geometry in content.geometries.items()}
+    for placement in content.placements:
+        for yarns, (yarn, material) in parts[placement.key]:
+            scene.add(
+                yarns,
+                yarn=yarn,
+                material=material,
+                transform=placement.world_from_object,
+                object_id=placement.object_id,
+                name=placement.name,
+            )
+    return scene
+
+
+def _parts(lisle, geometry, at_rest):
+    """[(lisle.Yarns, (lisle.Yarn, lisle.Material))]: the curves of one geometry, by material."""
+    curves, materials = geometry.curves, geometry.materials
+    if curves.material_index is None or len(materials) == 1:
+        return [(REST_SHAPES.yarns(lisle, geometry.key, curves, at_rest), materials[0])]
+    # Blender draws an index beyond the last slot with the last one.
+    slots = np.clip(curves.material_index, 0, len(materials) - 1)
+    return [
+        (
+            REST_SHAPES.yarns(lisle, (*geometry.key, f"material {slot}"), part, part if curves is at_rest else rest),
+            materials[slot],
+        )
+        for slot in np.unique(slots)
+        for part, rest in [(curves.select(slots == slot), at_rest.select(slots == slot))]
+    ]

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What lasts as long as a render job: one picture or a whole animation. Blender makes a new engine for every frame.
+
+It is forgotten between jobs, because anything may have been edited there.
+"""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from .rest import RestShapes
+
+REST_SHAPES = RestShapes()
+
+_said = set()
+
+
+def not_said_before(sentences):
+    """Those of the sentences that are new in this job."""
+    new = [sentence for sentence in dict.fromkeys(sentences) if sentence not in _said]
+    _said.update(new)
+    return new
+
+
+@persistent
+def _forget(*_):
+    REST_SHAPES.clear()
+    _said.clear()
+
+
+_HANDLERS = ("render_init", "render_complete", "render_cancel", "load_pre")
+
+
+def register():
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(_forget)
+
+
+def unregister():
+    for name in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(_forget)
+    _forget()

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A Blender material's Lisle settings as native yarn and material."""
+
+from ..presets import DEFAULT_FIBER, DEFAULT_YARN
+
+
+def yarn_and_material(lisle, material):
+    """(lisle.Yarn, lisle.Material) of a `bpy.types.Material`, or the defaults for None."""
+    if material is None:
+        return lisle.Yarn.preset(DEFAULT_YARN), lisle.Material.preset(DEFAULT_FIBER)
+    return _native(lisle, material.lisle.yarn), _native(lisle, material.lisle.fiber)
+
+
+def _native(lisle, group):
+    preset = group.native_preset(lisle)
+    if not group.customize:
+        return preset
+    return preset.replace(**{field: _plain(getattr(group, field)) for field in group.FIELDS})
+
+
+def _plain(value):
+    """Vectors as tuples of floats."""
+    return value if isinstance(value, int | float) else tuple(value)
+
+
+def geometry_materials(obj, data):
+    """Materials by slot index of curves `data` on `obj`; a slot linked to the object wins over the data's."""
+    materials = list(data.materials) if data is not None else []
+    slots = obj.material_slots
+    if not materials:
+        return [slot.material for slot in slots]
+    for index, slot in enumerate(slots):
+        if slot.link == "OBJECT" and index < len(materials):
+            materials[index] = slot.material
+    return materials

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a view layer shows at one frame: curves, where they are placed, lights.
+
+Blender lists geometry-nodes output twice: in the geometry set of the object that makes it, and as extra entries of
+`depsgraph.object_instances` without attributes. Only the first is read; instances of whole objects and collections
+come from the second.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..core.curves import CurveArrays
+from .curves import read_curves
+from .legacy import read_legacy
+from .lights import native_light
+from .materials import geometry_materials, yarn_and_material
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Curves of one object, or of one geometry that its geometry nodes instance."""
+
+    key: tuple
+    """Name of the object, then the indices of the instanced geometry: the same in every frame and process."""
+    object_name: str
+    curves: CurveArrays
+    materials: list
+    """(lisle.Yarn, lisle.Material) by material index; never empty."""
+    reference_frame: int
+    remeasure: bool
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A geometry at a place."""
+
+    key: tuple
+    world_from_object: np.ndarray
+    """(4, 4) float64."""
+    object_id: int
+    """Blender's pass index."""
+    name: str
+
+    def order(self):
+        """Sorts placements the same way in every process."""
+        return self.key, self.world_from_object.tobytes()
+
+
+@dataclass
+class Content:
+    """What `collect` returns. Holds no reference into Blender's data."""
+
+    geometries: dict = field(default_factory=dict)
+    """Geometry by key."""
+    placements: list = field(default_factory=list)
+    lights: list = field(default_factory=list)
+
+
+def collect(lisle, depsgraph, note, only=None):
+    """Reads the curves and lights of a view layer at the frame that `depsgraph` is at.
+
+    `only` limits it to the curves of objects of these names (as in `Geometry.key`), without lights.
+    `note` is called with each sentence about something left out.
+    """
+    content = Content()
+    parts_of = {}
+    meshes = 0
+    for instance in depsgraph.object_instances:
+        obj = instance.object
+        if obj.type != obj.original.type:  # a component of some geometry set under its owner's name
+            continue
+        if obj.type == "LIGHT":
+            if only is None and instance.show_self:
+                content.lights.append(native_light(lisle, obj, instance.matrix_world, note))
+            continue
+        name = obj.original.name_full
+        if only is not None and name not in only:
+            continue
+        if not _may_have_curves(obj):
+            meshes += obj.type == "MESH"
+            continue
+        if not obj.visible_camera:
+            continue
+        if obj.is_holdout:
+            note(f"object '{obj.name}': holdout is not supported and ignored")
+        geometry = obj.evaluated_geometry()
+        if instance.is_instance and _is_component(obj, geometry):
+            continue
+        if name not in parts_of:
+            parts_of[name] = _read_parts(lisle, obj, geometry, depsgraph)
+            for part, _ in parts_of[name]:
+                content.geometries[part.key] = part
+        world_from_object = np.array(instance.matrix_world, dtype=np.float64)
+        for part, transforms in parts_of[name]:
+            if not instance.show_self and len(part.key) == 1:
+                continue
+            for transform in transforms:
+                content.placements.append(
+                    Placement(part.key, world_from_object @ transform, obj.pass_index, obj.name)
+                )
+    if meshes and only is None:
+        note(f"{meshes} mesh object(s) without curves are not drawn")
+    content.placements.sort(key=Placement.order)
+    return content
+
+
+def _may_have_curves(obj):
+    return obj.type in {"CURVES", "CURVE"} or any(modifier.type == "NODES" for modifier in obj.modifiers)
+
+
+def _is_component(obj, geometry):
+    """Whether an instance is a bare component of some geometry set: those carry neither curves nor instances."""
+    if geometry.curves is not None or geometry.instances_pointcloud() is not None:
+        return False
+    return obj.type != "CURVE" or geometry.mesh is None
+
+
+def _read_parts(lisle, obj, geometry, depsgraph):
+    """[(Geometry, (k, 4, 4) object_from_part)] of one evaluated object."""
+    name, settings, scene = obj.original.name_full, obj.lisle, depsgraph.scene
+    if settings.use_reference_frame:
+        reference_frame = settings.reference_frame
+    elif scene.lisle.use_reference_frame:
+        reference_frame = scene.lisle.reference_frame
+    else:
+        reference_frame = scene.frame_start
+
+    parts = []
+
+    def add(path, arrays, materials, transforms):
+        if arrays is None:
+            return
+        if settings.yarn_radius > 0 and obj.type != "CURVE":
+            arrays = _with_radius(arrays, settings.yarn_radius)
+        native = [yarn_and_material(lisle, material) for material in materials or [None]]
+        parts.append(
+            (Geometry((name, *path), obj.name, arrays, native, reference_frame, settings.remeasure), transforms)
+        )
+
+    own = np.eye(4)[np.newaxis]
+    if obj.type == "CURVE":
+        add((), read_legacy(obj, geometry, depsgraph), geometry_materials(obj, geometry.curves or obj.data), own)
+    elif geometry.curves is not None:
+        add((), read_curves(geometry.curves), geometry_materials(obj, geometry.curves), own)
+    for path, curves, transforms in _instanced_curves(geometry, (), own):
+        add(path, read_curves(curves), list(curves.materials), transforms)
+    return parts
+
+
+def _with_radius(arrays, radius_m):
+    return replace(arrays, radii=np.full(len(arrays.points), radius_m, np.float32))
+
+
+def _instanced_curves(geometry, path, transforms):
+    """(path, curves, (k, 4, 4) object_from_curves) of every geometry that a geometry set instances, at any depth."""
+    instances = geometry.instances_pointcloud()
+    if instances is None:
+        return
+    count = len(instances.points)
+    references = np.empty(count, np.int32)
+    instances.attributes[".reference_index"].data.foreach_get("value", references)
+    matrices = np.empty(count * 16, np.float32)
+    instances.attributes["instance_transform"].data.foreach_get("value", matrices)
+    matrices = matrices.reshape(count, 4, 4).transpose(0, 2, 1).astype(np.float64)  # stored by columns
+    for index, reference in enumerate(geometry.instance_references()):
+        if not hasattr(reference, "instance_references"):  # an object or a collection: an entry of its own
+            continue
+        local = matrices[references == index]
+        nested = np.einsum("aij,bjk->abik", transforms, local).reshape(-1, 4, 4)
+        if reference.curves is not None:
+            yield (*path, index), reference.curves, nested
+        yield from _instanced_curves(reference, (*path, index), nested)

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The native module `lisle`, or a clear reason why it is not there.
+
+The extension registers without it, so that panels can say what is wrong instead of Blender hiding the add-on.
+"""
+
+import importlib
+
+from .core.errors import NativeError
+
+_ADVICE = (
+    "The extension's wheel is missing or was built for another system. "
+    "Install the Lisle package for this platform, and restart Blender"
+)
+
+
+def module():
+    """The imported `lisle` module. Raises NativeError with advice where it cannot be had."""
+    try:
+        return importlib.import_module("lisle")
+    except Exception as error:  # a broken shared library raises OSError, a panicking initialiser anything
+        raise NativeError(f"The native module 'lisle' cannot be loaded ({error}). {_ADVICE}") from error
+
+
+def problem():
+    """Why the native module cannot be used, for a panel; None if all is well."""
+    try:
+        module()
+    except NativeError as error:
+        return str(error)
+    return None

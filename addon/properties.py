@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings that are stored in .blend files: `material.lisle`, `scene.lisle`, `object.lisle`, `view_layer.lisle`.
+
+A yarn or fiber is a preset of the native module; 'Customize' copies its numbers into the properties here, which
+count from then on. Every property has the name of the native field it stands for.
+"""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
+
+from . import native
+from .core.errors import NativeError
+from .presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS
+
+
+def _fill_from_preset(group, _context):
+    """Copies the preset's numbers, so that customizing starts from what is on screen."""
+    if not group.customize:
+        return
+    try:
+        preset = group.native_preset(native.module())
+    except NativeError as error:
+        print(f"Lisle: {error}")
+        return
+    for field in group.FIELDS:
+        setattr(group, field, getattr(preset, field))
+
+
+def _length(name, description, **options):
+    return FloatProperty(name=name, description=description, precision=4, step=0.1, **options)
+
+
+def _variate(name, description):
+    return FloatVectorProperty(name=name, description=f"{description}: mean and standard deviation", size=2, precision=4)
+
+
+def _color(name, description):
+    return FloatVectorProperty(name=name, description=description, subtype="COLOR", size=3, min=0, max=1)
+
+
+def _degrees(name, description):
+    return FloatProperty(name=name, description=f"{description}, in degrees", min=0.1, max=90, default=10)
+
+
+class LisleYarn(bpy.types.PropertyGroup):
+    """A procedural yarn. Lengths are relative: the yarn is scaled to the radius of its curve."""
+
+    FIELDS = (
+        "plies", "fibers_per_ply", "ply_twist", "fiber_twist", "ply_radius", "ellipse_long", "ellipse_short",
+        "fiber_radius", "density_beta", "density_epsilon", "r_min", "migration_rate",
+        "loop_density", "hair_density", "loop_r_max", "hair_r_min", "hair_r_span", "hair_z_span", "hair_theta_span",
+    )  # fmt: skip
+
+    preset: EnumProperty(
+        name="Yarn",
+        description="The measured yarn it is spun like",
+        items=YARN_ITEMS,
+        default=DEFAULT_YARN,
+        update=_fill_from_preset,
+    )
+    customize: BoolProperty(
+        name="Customize",
+        description="Change the yarn's numbers; choosing a yarn sets them all again",
+        update=_fill_from_preset,
+    )
+    plies: IntProperty(name="Plies", description="Plies twisted into the yarn", min=1, max=16, default=3)
+    fibers_per_ply: IntProperty(
+        name="Fibers per Ply", description="Fibers twisted into each ply", min=1, soft_max=300, max=4000, default=75
+    )
+    ply_twist: _length(
+        "Ply Twist", "Length of yarn for one turn of its plies; the sign is the direction", default=0.453
+    )
+    fiber_twist: _length(
+        "Fiber Twist", "Length of ply for one turn of its fibers; the sign is the direction", default=-0.369
+    )
+    ply_radius: _length("Ply Spread", "Diameter of the helix that the plies follow", min=0, default=0.038)
+    ellipse_long: _length("Ply Width", "Long half axis of a ply's section", min=1e-5, default=0.026)
+    ellipse_short: _length("Ply Thickness", "Short half axis of a ply's section", min=1e-5, default=0.02)
+    fiber_radius: _length("Fiber Radius", "Radius of one fiber", min=1e-6, default=0.002)
+    density_beta: FloatProperty(
+        name="Density Falloff", description="How strongly fibers gather at the ply's core", min=0, soft_max=1
+    )
+    density_epsilon: FloatProperty(
+        name="Density Floor", description="Share of the fibers spread evenly over the ply", min=0, max=0.5
+    )
+    r_min: FloatProperty(
+        name="Migration Depth", description="Least relative radius of a fiber that wanders inwards", min=0, max=1
+    )
+    migration_rate: FloatProperty(
+        name="Migration Rate", description="Times a fiber wanders in and out per turn", min=0.01, soft_max=5, default=1
+    )
+    loop_density: FloatProperty(
+        name="Loops", description="Fibers that leave the ply as loops, per unit of length", min=0, soft_max=100
+    )
+    hair_density: FloatProperty(
+        name="Hairs", description="Fibers that end in the air, per unit of length", min=0, soft_max=100
+    )
+    loop_r_max: _variate("Loop Height", "Largest distance of a loop from the ply's centre")
+    hair_r_min: _variate("Hair Start", "Distance from the ply's centre at which a hair leaves")
+    hair_r_span: _variate("Hair Reach", "How much farther out its tip is")
+    hair_z_span: _variate("Hair Slant", "Its extent along the ply")
+    hair_theta_span: _variate("Hair Turn", "Angle it turns around the ply, in radians")
+
+    def native_preset(self, lisle):
+        return lisle.Yarn.preset(self.preset)
+
+
+class LisleFiber(bpy.types.PropertyGroup):
+    """How a fiber scatters light: reflection (R), transmission (TT), and a diffuse part."""
+
+    FIELDS = (
+        "color_r", "color_tt", "beta_r_deg", "beta_tt_deg", "gamma_tt_deg",
+        "diffuse", "diffuse_weight", "specular", "specular_beta_deg",
+    )  # fmt: skip
+
+    preset: EnumProperty(
+        name="Fiber",
+        description="The measured fiber it scatters light like",
+        items=FIBER_ITEMS,
+        default=DEFAULT_FIBER,
+        update=_fill_from_preset,
+    )
+    customize: BoolProperty(
+        name="Customize",
+        description="Change the fiber's numbers; choosing a fiber sets them all again",
+        update=_fill_from_preset,
+    )
+    color_r: _color("Reflection", "Share of the light that is reflected straight on, before the Fresnel rise")
+    color_tt: _color("Transmission", "Share of the light entering a fiber that passes through it: the yarn's colour")
+    beta_r_deg: _degrees("Reflection Width", "Width of the highlight along the fiber")
+    beta_tt_deg: _degrees("Transmission Width", "Spread of transmitted light along the fiber")
+    gamma_tt_deg: _degrees("Transmission Spread", "Spread of transmitted light around the fiber")
+    diffuse: _color("Diffuse", "Colour of the diffuse part")
+    diffuse_weight: FloatProperty(
+        name="Diffuse Weight", description="Share of the diffuse part in physical shading", min=0, max=1
+    )
+    specular: _color("Specular", "Colour of the highlight in simple shading")
+    specular_beta_deg: _degrees("Specular Width", "Width of the highlight in simple shading")
+
+    def native_preset(self, lisle):
+        return lisle.Material.preset(self.preset)
+
+
+class LisleMaterialSettings(bpy.types.PropertyGroup):
+    """`material.lisle`"""
+
+    yarn: PointerProperty(type=LisleYarn)
+    fiber: PointerProperty(type=LisleFiber)
+
+
+class LisleSceneSettings(bpy.types.PropertyGroup):
+    """`scene.lisle`"""
+
+    samples: IntProperty(
+        name="Samples", description="Jittered samples per pixel", min=1, soft_max=256, max=65536, default=16
+    )
+    shading: EnumProperty(
+        name="Shading",
+        description="How fibers scatter light",
+        items=(
+            ("physical", "Physical", "Reflection and transmission, as measured on fibers", 0),
+            ("simple", "Simple", "A highlight and a diffuse part; faster", 1),
+        ),
+    )
+    occlusion: EnumProperty(
+        name="Ambient Occlusion",
+        description="How deep fibers receive less light from the surroundings",
+        items=(
+            ("distance", "Distance", "From the distance to the yarn's centre", 0),
+            ("table", "Table", "Precomputed over the yarn's section", 1),
+        ),
+    )
+    lod: FloatProperty(
+        name="Level of Detail",
+        description="Fibers thinner than this many pixels are merged; 0 draws every fiber",
+        min=0,
+        max=16,
+        default=1,
+        subtype="PIXEL",
+    )
+    seed: IntProperty(name="Seed", description="Seed of the sample pattern", min=0)
+    use_reference_frame: BoolProperty(
+        name="Custom Reference Frame",
+        description="Measure yarn at a frame of your choice, not at the start of the frame range",
+    )
+    reference_frame: IntProperty(
+        name="Frame",
+        description="Frame at which yarn has its natural length; fibers keep their places on it in all frames",
+        default=1,
+    )
+
+
+class LisleObjectSettings(bpy.types.PropertyGroup):
+    """`object.lisle`"""
+
+    yarn_radius: FloatProperty(
+        name="Yarn Radius",
+        description="Radius of the yarn; 0 takes the curve's own. Multiplies the point radius of legacy curves",
+        min=0,
+        soft_max=0.1,
+        precision=5,
+        subtype="DISTANCE",
+    )
+    use_reference_frame: BoolProperty(
+        name="Own Reference Frame",
+        description="Measure this object's yarn at its own frame, not at the scene's",
+    )
+    reference_frame: IntProperty(
+        name="Frame", description="Frame at which this object's yarn has its natural length", default=1
+    )
+    remeasure: BoolProperty(
+        name="Re-measure Each Frame",
+        description="Take every frame's curves as yarn at rest. For curves whose number of points changes: "
+        "fibers then slide along yarn that stretches",
+    )
+
+
+class LisleViewLayerSettings(bpy.types.PropertyGroup):
+    """`view_layer.lisle`"""
+
+    use_pass_tangent: BoolProperty(name="Fiber Tangent", description="Direction of the fibers, world space")
+    use_pass_alpha: BoolProperty(name="Alpha", description="Coverage of the yarn, also where the film is opaque")
+
+
+_GROUPS = (
+    LisleYarn,
+    LisleFiber,
+    LisleMaterialSettings,
+    LisleSceneSettings,
+    LisleObjectSettings,
+    LisleViewLayerSettings,
+)
+_OWNERS = (
+    (bpy.types.Material, LisleMaterialSettings),
+    (bpy.types.Scene, LisleSceneSettings),
+    (bpy.types.Object, LisleObjectSettings),
+    (bpy.types.ViewLayer, LisleViewLayerSettings),
+)
+
+
+def register():
+    for group in _GROUPS:
+        bpy.utils.register_class(group)
+    for owner, group in _OWNERS:
+        owner.lisle = PointerProperty(type=group)
+
+
+def unregister():
+    for owner, _ in _OWNERS:
+        del owner.lisle
+    for group in reversed(_GROUPS):
+        bpy.utils.unregister_class(group)

@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels. They read settings and draw them; nothing here computes."""
+
+import bpy
+
+from . import blender_panels
+from .material import PANELS as MATERIAL_PANELS
+from .object import PANELS as OBJECT_PANELS
+from .render import PANELS as RENDER_PANELS
+from .view_layer import PANELS as VIEW_LAYER_PANELS
+
+_PANELS = (*RENDER_PANELS, *VIEW_LAYER_PANELS, *OBJECT_PANELS, *MATERIAL_PANELS)
+
+
+def register():
+    for panel in _PANELS:
+        bpy.utils.register_class(panel)
+    blender_panels.register()
+
+
+def unregister():
+    blender_panels.unregister()
+    for panel in reversed(_PANELS):
+        bpy.utils.unregister_class(panel)

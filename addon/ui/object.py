@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Object properties."""
+
+import bpy
+
+from .panel import LislePanel
+
+
+class LISLE_OBJECT_PT_yarn(LislePanel, bpy.types.Panel):
+    bl_label = "Yarn"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        obj = context.object
+        return super().poll(context) and obj is not None and obj.type in {"CURVE", "CURVES", "MESH", "POINTCLOUD"}
+
+    def draw(self, context):
+        layout, settings = self.split_layout(), context.object.lisle
+        layout.prop(settings, "yarn_radius")
+        layout.prop(settings, "remeasure")
+        row = layout.row(heading="Reference Frame")
+        row.active = not settings.remeasure
+        row.prop(settings, "use_reference_frame", text="")
+        sub = row.row()
+        sub.active = settings.use_reference_frame
+        sub.prop(settings, "reference_frame", text="")
+
+
+PANELS = (LISLE_OBJECT_PT_yarn,)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Render properties."""
+
+import bpy
+
+from .. import native
+from .panel import LislePanel, wrapped_label
+
+
+class LISLE_RENDER_PT_problem(LislePanel, bpy.types.Panel):
+    """Only there if something is wrong."""
+
+    bl_label = "Lisle Cannot Render"
+    bl_context = "render"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and native.problem() is not None
+
+    def draw(self, _context):
+        wrapped_label(self.layout, native.problem(), icon="ERROR")
+
+
+class LISLE_RENDER_PT_sampling(LislePanel, bpy.types.Panel):
+    bl_label = "Sampling"
+    bl_context = "render"
+
+    def draw(self, context):
+        layout, settings = self.split_layout(), context.scene.lisle
+        layout.prop(settings, "samples")
+        layout.prop(settings, "seed")
+
+
+class LISLE_RENDER_PT_shading(LislePanel, bpy.types.Panel):
+    bl_label = "Fibers"
+    bl_context = "render"
+
+    def draw(self, context):
+        layout, settings = self.split_layout(), context.scene.lisle
+        layout.prop(settings, "shading")
+        layout.prop(settings, "occlusion")
+        layout.prop(settings, "lod")
+
+
+class LISLE_RENDER_PT_reference(LislePanel, bpy.types.Panel):
+    bl_label = "Reference Frame"
+    bl_context = "render"
+
+    def draw(self, context):
+        layout, settings = self.split_layout(), context.scene.lisle
+        row = layout.row(heading="Custom Frame")
+        row.prop(settings, "use_reference_frame", text="")
+        sub = row.row()
+        sub.active = settings.use_reference_frame
+        sub.prop(settings, "reference_frame", text="")
+        if not settings.use_reference_frame:
+            layout.label(text=f"Yarn is measured at the first frame, {context.scene.frame_start}")
+
+
+class LISLE_RENDER_PT_film(LislePanel, bpy.types.Panel):
+    bl_label = "Film"
+    bl_context = "render"
+
+    def draw(self, context):
+        self.split_layout().prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+PANELS = (
+    LISLE_RENDER_PT_problem,
+    LISLE_RENDER_PT_sampling,
+    LISLE_RENDER_PT_shading,
+    LISLE_RENDER_PT_reference,
+    LISLE_RENDER_PT_film,
+)
