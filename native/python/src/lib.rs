@@ -1,1 +1,45 @@
-//! Lisle: python.
+//! The extension module `lisle._native`: conversions, one error map ([`error`]), one place that releases the GIL ([`gil`]).
+//! What people call is the Python package around it.
+
+mod adapter;
+mod convert;
+mod error;
+mod exr;
+mod fabric;
+mod gil;
+mod load;
+mod material;
+mod png;
+mod renderer;
+mod save;
+mod scene;
+mod yarn;
+mod yarns;
+
+use pyo3::pymodule;
+
+/// Everything that `lisle` is built from.
+#[pymodule(name = "_native")]
+mod native {
+    #[pymodule_export]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+
+    #[pymodule_export]
+    use super::adapter::{Adapter, adapters};
+    #[pymodule_export]
+    use super::exr::save_exr;
+    #[pymodule_export]
+    use super::fabric::{knit_flat, knit_sleeve, knit_tube, sweater};
+    #[pymodule_export]
+    use super::load::load;
+    #[pymodule_export]
+    use super::material::{check_material, material_preset, material_presets};
+    #[pymodule_export]
+    use super::png::save_png;
+    #[pymodule_export]
+    use super::renderer::Renderer;
+    #[pymodule_export]
+    use super::yarn::{check_yarn, yarn_preset, yarn_presets};
+    #[pymodule_export]
+    use super::yarns::Yarns;
+}

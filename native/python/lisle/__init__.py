@@ -1,0 +1,50 @@
+"""Fiber-level cloth from yarn curves.
+
+Lengths are metres (or the file's unit, where it has none), right-handed, Z up; colours are scene-linear Rec.709.
+
+>>> import lisle
+>>> yarns = lisle.load("glove.bcc")
+>>> camera = lisle.Camera.fit(yarns, direction=(0, -1, 0.3), size=(1280, 960))
+>>> image = lisle.Renderer().render(yarns, camera=camera, lights=[lisle.Sun(direction=(-1, 1, -2), strength=3.0)])
+>>> image.save("glove.png")
+"""
+
+from ._native import Adapter, Yarns, __version__, adapters
+from .camera import Camera
+from .errors import Cancelled, DeviceError, Error, InputError
+from .fabric import knit_sleeve, knit_swatch, knit_tube, sweater
+from .image import Image
+from .lights import Area, Light, Point, Spot, Sun
+from .loading import load
+from .material import Material
+from .renderer import Renderer
+from .scene import Object, Scene
+from .yarn import Yarn
+
+__all__ = [
+    "Adapter",
+    "Area",
+    "Camera",
+    "Cancelled",
+    "DeviceError",
+    "Error",
+    "Image",
+    "InputError",
+    "Light",
+    "Material",
+    "Object",
+    "Point",
+    "Renderer",
+    "Scene",
+    "Spot",
+    "Sun",
+    "Yarn",
+    "Yarns",
+    "__version__",
+    "adapters",
+    "knit_sleeve",
+    "knit_swatch",
+    "knit_tube",
+    "load",
+    "sweater",
+]

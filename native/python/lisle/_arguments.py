@@ -1,0 +1,71 @@
+"""Checks of shape and type for arguments that people write by hand, with messages that name them."""
+
+from collections.abc import Iterable, Sequence
+from typing import TypeAlias, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import InputError
+
+Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating]
+"""Three numbers."""
+
+Triple: TypeAlias = tuple[float, float, float]
+
+
+def number(name: str, value: object) -> float:
+    """A finite float."""
+    try:
+        result = float(cast(float, value))
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected a number, got {value!r}") from None
+    if not np.isfinite(result):
+        raise InputError(f"{name}: {result} is not finite")
+    return result
+
+
+def triple(name: str, value: object) -> Triple:
+    """Three finite floats."""
+    try:
+        items = tuple(cast(Iterable[object], value))
+    except TypeError:
+        items = ()
+    if len(items) != 3:
+        raise InputError(f"{name}: expected three numbers, got {value!r}")
+    x, y, z = (number(name, item) for item in items)
+    return x, y, z
+
+
+def direction(name: str, value: object) -> Triple:
+    """Three finite floats that are not all zero."""
+    result = triple(name, value)
+    if not any(result):
+        raise InputError(f"{name}: the zero vector has no direction")
+    return result
+
+
+def matrix(name: str, value: object) -> npt.NDArray[np.float64]:
+    """A finite 4×4 matrix that acts on column vectors; a read-only copy."""
+    try:
+        result = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected a 4×4 matrix, got {type(value).__name__}") from None
+    if result.shape != (4, 4):
+        raise InputError(f"{name}: expected a 4×4 matrix, got shape {result.shape}")
+    if not np.isfinite(result).all():
+        row, column = np.argwhere(~np.isfinite(result))[0]
+        raise InputError(f"{name}: entry [{row}, {column}] is {result[row, column]}")
+    result.flags.writeable = False
+    return result
+
+
+def pixels(name: str, value: object) -> tuple[int, int]:
+    """Width and height."""
+    try:
+        width, height = (int(item) for item in cast(Iterable[int], value))
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected width and height in pixels, got {value!r}") from None
+    if width < 1 or height < 1:
+        raise InputError(f"{name}: {width}×{height} pixels hold no picture")
+    return width, height

@@ -1,0 +1,142 @@
+"""The renderer."""
+
+from collections.abc import Callable, Iterable
+
+from . import _arguments as arguments
+from . import _native
+from ._arguments import Vector
+from ._native import Adapter, Yarns
+from .camera import Camera
+from .errors import InputError
+from .image import Image
+from .lights import Light
+from .material import Material
+from .scene import Scene
+from .yarn import Yarn
+
+Progress = Callable[[float], bool | None]
+"""Called with the finished fraction, 0 to 1; returning False cancels."""
+
+
+class Renderer:
+    """A graphics adapter that draws yarns.
+
+    Args:
+        adapter: a part of its name, see `adapters`; the most capable one unless given.
+
+    Raises:
+        DeviceError: there is no such adapter, or none that is usable.
+    """
+
+    def __init__(self, adapter: str | None = None) -> None:
+        self._native = _native.Renderer(adapter)
+
+    @property
+    def adapter(self) -> Adapter:
+        """What it draws with."""
+        return self._native.adapter
+
+    def __repr__(self) -> str:
+        return f"Renderer({self.adapter.name!r})"
+
+    def render(
+        self,
+        what: Yarns | Scene,
+        *,
+        yarn: Yarn | None = None,
+        material: Material | None = None,
+        camera: Camera | None = None,
+        lights: Iterable[Light] | None = None,
+        ambient: Vector | None = None,
+        samples: int = 16,
+        size: tuple[int, int] | None = None,
+        shading: str = "physical",
+        occlusion: str = "distance",
+        region: tuple[int, int, int, int] | None = None,
+        transparent: bool = True,
+        lod_pixels: float = 1.0,
+        filter_width: float = 1.5,
+        seed: int = 0,
+        progress: Progress | None = None,
+    ) -> Image:
+        """Draws yarns, or a scene.
+
+        Args:
+            what: yarns, with the next five arguments; or a scene, which has them already.
+            yarn: the procedural yarn; "cotton-1" unless given.
+            material: how its fibers scatter; "cotton" unless given.
+            camera: viewpoint; `Camera.fit(yarns)` unless given.
+            lights: any number of lights.
+            ambient: constant radiance from everywhere, scene-linear.
+            samples: jittered samples per pixel.
+            size: width and height of the whole frame, pixels; the camera's unless given.
+            shading: "physical" (R + TT and diffuse) or "simple".
+            occlusion: "distance" (cubic in the distance from the yarn's centre) or "table".
+            region: part of the frame to draw, x0, y0, x1, y1 in pixels from the bottom left, x1 and y1 exclusive.
+            transparent: leaves the background transparent; otherwise it is the ambient radiance.
+            lod_pixels: fibers thinner than this are merged; 0 draws every fiber.
+            filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
+            seed: of the sample sequence.
+            progress: called now and then with the finished fraction; returning False cancels.
+
+        Raises:
+            InputError: something in the scene or the arguments cannot be drawn.
+            DeviceError: the adapter failed.
+            Cancelled: `progress` returned False. What `progress` raises comes through as it is.
+        """
+        scene = self._scene(what, yarn, material, camera, lights, ambient)
+        size = arguments.pixels("size", scene.camera.size if size is None else size)
+        passes, statistics = self._native.render(
+            scene.objects,
+            scene.lights,
+            scene.ambient,
+            (scene.camera.world_from_camera, scene.camera.clip_from_camera),
+            {
+                "size": size,
+                "region": None if region is None else _from_top_left(region, size),
+                "samples": samples,
+                "shading": shading,
+                "occlusion": occlusion,
+                "transparent": transparent,
+                "lod_pixels": lod_pixels,
+                "filter_width": filter_width,
+                "seed": seed,
+            },
+            progress,
+        )
+        return Image(passes, statistics)
+
+    @staticmethod
+    def _scene(
+        what: Yarns | Scene,
+        yarn: Yarn | None,
+        material: Material | None,
+        camera: Camera | None,
+        lights: Iterable[Light] | None,
+        ambient: Vector | None,
+    ) -> Scene:
+        if isinstance(what, Scene):
+            given = {"yarn": yarn, "material": material, "camera": camera, "lights": lights, "ambient": ambient}
+            for name, value in given.items():
+                if value is not None:
+                    raise InputError(f"{name}: the scene has its own")
+            if not what.objects:
+                raise InputError("the scene holds no objects")
+            return what
+        if not isinstance(what, Yarns):
+            raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
+        scene = Scene(camera or Camera.fit(what), lights or (), (0.0, 0.0, 0.0) if ambient is None else ambient)
+        scene.add(what, yarn, material)
+        return scene
+
+
+def _from_top_left(region: tuple[int, int, int, int], size: tuple[int, int]) -> tuple[int, int, int, int]:
+    """Left, top, width, height of a region given by two corners from the bottom left."""
+    try:
+        x0, y0, x1, y1 = (int(value) for value in region)
+    except (TypeError, ValueError):
+        raise InputError(f"region: expected x0, y0, x1, y1 in pixels, got {region!r}") from None
+    width, height = size
+    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
+        raise InputError(f"region: ({x0}, {y0}) to ({x1}, {y1}) is empty or reaches beyond {width}×{height} pixels")
+    return x0, height - y1, x1 - x0, y1 - y0

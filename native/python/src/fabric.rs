@@ -1,0 +1,79 @@
+//! Knitted cloth.
+
+use glam::DVec3;
+use lisle_fabric::{FlatPatch, Knit, Pattern, Sleeve, Tube};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+use crate::gil::detached;
+use crate::yarns::Yarns;
+
+/// A pattern by name, such as "rib-2-2", or as a chart of k and p.
+fn pattern(text: &str) -> Result<Pattern, lisle_fabric::Error> {
+    let rib = text.strip_prefix("rib-").and_then(|counts| counts.split_once('-'));
+    match (text, rib.map(|(knit, purl)| (knit.parse(), purl.parse()))) {
+        ("stockinette", _) => Ok(Pattern::stockinette()),
+        ("garter", _) => Ok(Pattern::garter()),
+        (_, Some((Ok(knit), Ok(purl)))) => Pattern::rib(knit, purl),
+        _ => Pattern::from_chart(text),
+    }
+}
+
+/// A flat piece on an upright patch of its own size, front towards −Y, centred on the origin.
+#[pyfunction]
+pub fn knit_flat(
+    py: Python<'_>,
+    stitches: &str,
+    courses: usize,
+    wales: usize,
+    yarn_radius: f64,
+) -> Result<Yarns, Failure> {
+    let curves = detached(py, || {
+        let knit = Knit::flat(&pattern(stitches)?, courses, wales, yarn_radius)?;
+        knit.swatch(&FlatPatch { size_m: knit.size_m() })
+    })?;
+    Yarns::of_curves(py, curves, None, "knitted swatch".to_owned())
+}
+
+/// A tube of its own radius about the Z axis, standing on z = 0.
+#[pyfunction]
+pub fn knit_tube(
+    py: Python<'_>,
+    stitches: &str,
+    courses: usize,
+    wales: usize,
+    yarn_radius: f64,
+) -> Result<Yarns, Failure> {
+    let curves = detached(py, || {
+        let knit = Knit::round(&pattern(stitches)?, courses, wales, yarn_radius)?;
+        knit.swatch(&Tube { radius_m: knit.tube_radius_m(), height_m: knit.size_m().y })
+    })?;
+    Yarns::of_curves(py, curves, None, "knitted tube".to_owned())
+}
+
+/// A tube about a centre line.
+#[pyfunction]
+pub fn knit_sleeve(
+    py: Python<'_>,
+    centre_line: Vec<[f64; 3]>,
+    radius: f64,
+    seam_direction: [f64; 3],
+    stitches: &str,
+    courses: usize,
+    wales: usize,
+    yarn_radius: f64,
+) -> Result<Yarns, Failure> {
+    let curves = detached(py, || {
+        let centre_line: Vec<DVec3> = centre_line.into_iter().map(DVec3::from).collect();
+        let sleeve = Sleeve::new(&centre_line, radius, DVec3::from(seam_direction))?;
+        Knit::round(&pattern(stitches)?, courses, wales, yarn_radius)?.swatch(&sleeve)
+    })?;
+    Yarns::of_curves(py, curves, None, "knitted sleeve".to_owned())
+}
+
+/// A sweater of at most so many control points.
+#[pyfunction]
+pub fn sweater(py: Python<'_>, points: usize) -> Result<Yarns, Failure> {
+    let curves = detached(py, || lisle_fabric::sweater(points))?;
+    Yarns::of_curves(py, curves, None, "knitted sweater".to_owned())
+}

@@ -1,0 +1,77 @@
+//! The class `Renderer`.
+
+use lisle_gpu::{Image, Statistics};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::adapter::Adapter;
+use crate::convert::{array, field_error};
+use crate::error::Failure;
+use crate::gil::{Listener, detached};
+use crate::scene::{LightFields, ObjectFields, Rows, SettingsItems, scene};
+
+/// An adapter that draws.
+#[pyclass(module = "lisle._native", frozen)]
+pub struct Renderer(lisle_gpu::Renderer);
+
+#[pymethods]
+impl Renderer {
+    #[new]
+    fn new(py: Python<'_>, adapter: Option<String>) -> Result<Self, Failure> {
+        detached(py, || lisle_gpu::Renderer::new(adapter.as_deref())).map(Self)
+    }
+
+    #[getter]
+    fn adapter(&self) -> Adapter {
+        self.0.adapter().clone().into()
+    }
+
+    /// Passes by name and statistics.
+    fn render<'py>(
+        &self,
+        py: Python<'py>,
+        objects: Vec<ObjectFields<'py>>,
+        lights: Vec<LightFields>,
+        ambient: [f32; 3],
+        camera: (Rows, Rows),
+        settings: &Bound<'py, PyDict>,
+        progress: Option<Py<PyAny>>,
+    ) -> Result<(Bound<'py, PyDict>, Bound<'py, PyDict>), Failure> {
+        let settings: SettingsItems = settings.extract().map_err(|error| Failure::Input(field_error(py, &error)))?;
+        let settings = settings.settings()?;
+        let scene = scene(objects, lights, ambient, camera)?;
+        let mut listener = Listener::new(progress);
+        let result = detached(py, || {
+            self.0.render(&scene, &settings, &mut |done| {
+                listener.report(f64::from(done.samples_done) / f64::from(done.samples))
+            })
+        });
+        let image = listener.outcome(result)?;
+        let statistics = statistics(py, &image.statistics)?;
+        Ok((passes(py, image)?, statistics))
+    }
+}
+
+/// The image's passes as numpy arrays, row 0 at the top.
+fn passes<'py>(py: Python<'py>, image: Image) -> PyResult<Bound<'py, PyDict>> {
+    let [width, height] = image.size.map(|pixels| pixels as usize);
+    let passes = PyDict::new(py);
+    passes.set_item("combined", array(py, image.combined.into_flattened(), &[height, width, 4])?)?;
+    passes.set_item("depth", array(py, image.depth, &[height, width])?)?;
+    passes.set_item("normal", array(py, image.normal.into_flattened(), &[height, width, 3])?)?;
+    passes.set_item("tangent", array(py, image.tangent.into_flattened(), &[height, width, 3])?)?;
+    passes.set_item("object_id", array(py, image.object_id, &[height, width])?)?;
+    Ok(passes)
+}
+
+fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'py, PyDict>> {
+    let milliseconds = PyDict::new(py);
+    for (pass, time) in &statistics.passes {
+        milliseconds.set_item(pass, time)?;
+    }
+    let result = PyDict::new(py);
+    result.set_item("segments_drawn", statistics.segments_drawn)?;
+    result.set_item("passes_ms", milliseconds)?;
+    result.set_item("gpu_bytes", statistics.gpu_bytes)?;
+    Ok(result)
+}

@@ -1,0 +1,148 @@
+//! What is drawn, from the dataclasses of the package.
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, Vec3};
+use lisle_gpu::{Camera, Cone, Light, Object, Occlusion, Scene, Settings, Shading};
+use pyo3::prelude::*;
+
+use crate::error::Failure;
+use crate::material::extract_material;
+use crate::yarn::extract_yarn;
+use crate::yarns::Yarns;
+
+/// A matrix by rows.
+pub type Rows = [[f64; 4]; 4];
+
+/// `lisle.Object`, by its attributes.
+#[derive(FromPyObject)]
+pub struct ObjectFields<'py> {
+    yarns: Bound<'py, Yarns>,
+    yarn: Bound<'py, PyAny>,
+    material: Bound<'py, PyAny>,
+    world_from_object: Rows,
+    object_id: u32,
+    name: String,
+}
+
+/// One of `lisle.Light`, by its attributes: the variants are told apart by what they have.
+#[derive(FromPyObject)]
+pub enum LightFields {
+    /// `lisle.Spot`
+    Spot {
+        position: [f64; 3],
+        direction: [f64; 3],
+        power: f32,
+        color: [f32; 3],
+        radius: f64,
+        cone_angle_rad: f64,
+        blend: f64,
+    },
+    /// `lisle.Area`
+    Area { world_from_light: Rows, size: [f64; 2], power: f32, color: [f32; 3], shape: String },
+    /// `lisle.Point`
+    Point { position: [f64; 3], power: f32, color: [f32; 3], radius: f64 },
+    /// `lisle.Sun`
+    Sun { direction: [f64; 3], strength: f32, color: [f32; 3], angle_rad: f64 },
+}
+
+/// The keyword arguments of a render that are settings.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct SettingsItems {
+    size: [u32; 2],
+    region: Option<[u32; 4]>,
+    samples: u32,
+    shading: String,
+    occlusion: String,
+    transparent: bool,
+    lod_pixels: f32,
+    filter_width: f32,
+    seed: u32,
+}
+
+fn matrix(rows: Rows) -> DMat4 {
+    DMat4::from_cols_array_2d(&rows).transpose()
+}
+
+impl ObjectFields<'_> {
+    fn object(self) -> Result<Object, Failure> {
+        let of = |failure: Failure| failure.of(&self.name);
+        Ok(Object {
+            id: self.object_id,
+            yarns: self.yarns.get().yarns.clone(),
+            yarn: Arc::new(extract_yarn(&self.yarn).map_err(of)?),
+            material: Arc::new(extract_material(&self.material).map_err(of)?),
+            world_from_object: matrix(self.world_from_object),
+            name: self.name,
+        })
+    }
+}
+
+impl From<LightFields> for Light {
+    fn from(fields: LightFields) -> Self {
+        match fields {
+            LightFields::Sun { direction, strength, color, angle_rad } => {
+                Self::Sun { direction: direction.into(), irradiance: strength * Vec3::from(color), angle_rad }
+            }
+            LightFields::Point { position, power, color, radius } => {
+                Self::Point { position: position.into(), power: power * Vec3::from(color), radius, cone: None }
+            }
+            LightFields::Spot { position, direction, power, color, radius, cone_angle_rad, blend } => Self::Point {
+                position: position.into(),
+                power: power * Vec3::from(color),
+                radius,
+                cone: Some(Cone { direction: DVec3::from(direction), angle_rad: cone_angle_rad, blend }),
+            },
+            LightFields::Area { world_from_light, size, power, color, shape } => Self::Area {
+                world_from_light: matrix(world_from_light),
+                size,
+                ellipse: shape == "ellipse",
+                power: power * Vec3::from(color),
+            },
+        }
+    }
+}
+
+/// A scene, and how to draw it.
+pub fn scene(
+    objects: Vec<ObjectFields<'_>>,
+    lights: Vec<LightFields>,
+    ambient: [f32; 3],
+    camera: (Rows, Rows),
+) -> Result<Scene, Failure> {
+    Ok(Scene {
+        objects: objects.into_iter().map(ObjectFields::object).collect::<Result<_, _>>()?,
+        lights: lights.into_iter().map(Light::from).collect(),
+        ambient: Vec3::from(ambient),
+        camera: Camera { world_from_camera: matrix(camera.0), clip_from_camera: matrix(camera.1) },
+    })
+}
+
+impl SettingsItems {
+    /// The settings that they stand for.
+    pub fn settings(self) -> Result<Settings, Failure> {
+        let shading = match self.shading.as_str() {
+            "physical" => Shading::Physical,
+            "simple" => Shading::Simple,
+            other => return Err(Failure::Input(format!("shading: {other:?} is neither \"physical\" nor \"simple\""))),
+        };
+        let occlusion = match self.occlusion.as_str() {
+            "distance" => Occlusion::Distance,
+            "table" => Occlusion::Table,
+            other => return Err(Failure::Input(format!("occlusion: {other:?} is neither \"distance\" nor \"table\""))),
+        };
+        Ok(Settings {
+            size: self.size,
+            region: self.region,
+            samples: self.samples,
+            shading,
+            occlusion,
+            transparent: self.transparent,
+            lod_pixels: self.lod_pixels,
+            filter_width: self.filter_width,
+            seed: self.seed,
+            ..Settings::default()
+        })
+    }
+}
