@@ -1,1 +1,24 @@
-//! Lisle: gpu.
+//! The renderer: yarn curves become fibers in compute shaders (`shaders/`), through `wgpu`.
+
+mod device;
+mod error;
+mod frame;
+mod image;
+mod knots;
+mod layout;
+mod lights;
+mod pipelines;
+mod renderer;
+mod sampling;
+mod scene;
+mod shader;
+mod tables;
+mod timing;
+mod upload;
+mod view;
+
+pub use device::{AdapterInfo, adapters};
+pub use error::Error;
+pub use image::{Image, Statistics};
+pub use renderer::{Progress, Renderer};
+pub use scene::*;

@@ -137,7 +137,7 @@ const HAIR_WIDTH: (f64, f64) = (0.02, 0.45);
 ///
 /// Eq. 2 with its phase moved by half a period. A hair leaves at the middle, where a migrating fiber is
 /// outermost, from that radius rather than from R_min^hair, so that it stays attached; its tip lies at R_min^hair + R_span.
-fn profile(yarn: &Yarn, periods_per_turn: f64, fiber_radius: f64, phase: f64, hash: u32) -> Profile {
+fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, phase: f64, hash: u32) -> Profile {
     let wave = 0.5 - 0.5 * (TAU * phase).cos();
     let wave_rate = PI * (TAU * phase).sin();
     let inner = fiber_radius * yarn.r_min;
@@ -149,6 +149,9 @@ fn profile(yarn: &Yarn, periods_per_turn: f64, fiber_radius: f64, phase: f64, ha
         kind,
     };
     let variate = |v: super::Variate, key| v.mean + v.deviation * normal_from_hash(hash_combine(hash, key));
+    if index >= yarn.flyaway_fibers() {
+        return between(fiber_radius, FiberType::Migration);
+    }
     let (loop_chance, hair_chance) = yarn.flyaway_chances();
     let fly = &yarn.flyaways;
     let choice = unit_from_hash(hash);
@@ -193,7 +196,7 @@ pub fn fiber_point(yarn: &Yarn, twist: &Twist, table: &FiberTable, at: &YarnPoin
     }
     let period_hash = hash_combine(hash_combine(ply_hash, fiber.index), period);
     let periods_per_turn = twist.migration / twist.fiber;
-    let shape = profile(yarn, periods_per_turn, table.radius[index], phase.fract(), period_hash);
+    let shape = profile(yarn, periods_per_turn, fiber.index, table.radius[index], phase.fract(), period_hash);
     let phase_rate = at.length_rate * twist.migration;
 
     let sign = yarn.fiber_twist.signum();
@@ -314,7 +317,7 @@ mod tests {
         for name in PRESET_NAMES {
             let yarn = Yarn::preset(name).expect(name);
             let (loops, hairs) = yarn.flyaway_chances();
-            let per_length = f64::from(yarn.fibers_per_ply) / yarn.migration_period();
+            let per_length = f64::from(yarn.flyaway_fibers()) / yarn.migration_period();
             assert!((loops * per_length - yarn.flyaways.loop_density).abs() < 1e-9, "{name}");
             assert!((hairs * per_length - yarn.flyaways.hair_density).abs() < 1e-9, "{name}");
         }

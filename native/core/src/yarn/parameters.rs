@@ -98,9 +98,19 @@ impl Yarn {
         self.fiber_twist.abs() / self.migration_rate
     }
 
-    /// Chances that one period of one fiber is a loop, or a hair: density × period ÷ fibers.
+    /// How many fibers of a ply become loops and hairs: the outermost, in four of five of their periods.
+    ///
+    /// [Zhao2016] adds flyaways to the regular fibers, [WuYuksel2018 §3.1] turns periods of them into flyaways. Keeping those
+    /// to few fibers leaves the densities as they are, and a renderer need not look for them in all the others.
+    pub fn flyaway_fibers(&self) -> u32 {
+        const BUSY: f64 = 0.8;
+        let per_period = (self.flyaways.loop_density + self.flyaways.hair_density) * self.migration_period();
+        ((per_period / BUSY).ceil() as u32).min(self.fibers_per_ply)
+    }
+
+    /// Chances that one period of one of the [`Self::flyaway_fibers`] is a loop, or a hair: density × period ÷ fibers.
     pub fn flyaway_chances(&self) -> (f64, f64) {
-        let per_density = self.migration_period() / f64::from(self.fibers_per_ply);
+        let per_density = self.migration_period() / f64::from(self.flyaway_fibers().max(1));
         let (a, b) = (self.flyaways.loop_density * per_density, self.flyaways.hair_density * per_density);
         // A fiber cannot be more than one thing: densities beyond one flyaway per period saturate.
         let scale = (a + b).max(1.0);

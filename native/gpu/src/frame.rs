@@ -1,0 +1,484 @@
+//! A picture: tiles, samples, and the passes of a sample in order.
+
+use std::ops::ControlFlow;
+
+use glam::Vec3;
+
+use crate::device::Gpu;
+use crate::layout;
+use crate::lights::{self, LightSample};
+use crate::pipelines::{Bindings, Pipelines};
+use crate::sampling::{PixelFilter, r2, sphere};
+use crate::shader::Pass;
+use crate::timing::Timer;
+use crate::upload::{Draws, SceneBuffers, empty_storage};
+use crate::view::View;
+use crate::{Error, Image, Occlusion, Progress, Scene, Settings, Shading, Statistics};
+
+/// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
+const BLOCK: u32 = 256;
+const LANES: u32 = 64;
+const ROW: u32 = 32768;
+
+/// Most pixels of a tile.
+const TILE_PIXELS: u64 = 1 << 22;
+
+/// Bits for the steps along a segment, and for depth.
+const STEP_BITS: u32 = 7;
+const DEPTH_BITS: std::ops::RangeInclusive<u32> = 18..=24;
+
+/// Everything a picture is made of.
+pub(crate) struct FrameInput<'a> {
+    pub scene: &'a Scene,
+    pub settings: &'a Settings,
+    pub view: &'a View,
+    pub draws: &'a Draws,
+    pub buffers: &'a SceneBuffers,
+}
+
+impl FrameInput<'_> {
+    fn has_sky(&self) -> bool {
+        self.scene.ambient != Vec3::ZERO
+    }
+}
+
+/// Buffers that depend on the picture's size and the scene's counts.
+pub(crate) struct FrameBuffers {
+    capacity: Capacity,
+    keys: wgpu::Buffer,
+    film: [wgpu::Buffer; 3],
+    staging: wgpu::Buffer,
+    segment_work: wgpu::Buffer,
+    block_work: wgpu::Buffer,
+    dispatch: wgpu::Buffer,
+    draws: wgpu::Buffer,
+    lights: wgpu::Buffer,
+    views: wgpu::Buffer,
+    shadow_depths: wgpu::Buffer,
+    uniform: wgpu::Buffer,
+    shadow_uniform: wgpu::Buffer,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Capacity {
+    pixels: u64,
+    segments: u64,
+    draws: u64,
+    lights: u64,
+    views: u64,
+    shadow_resolution: u32,
+}
+
+/// Rectangles of at most [`TILE_PIXELS`] that cover a region: left, top, width, height.
+fn tiles([left, top, width, height]: [u32; 4]) -> Vec<[u32; 4]> {
+    let tile_width = width.min(2048);
+    let tile_height = height.min((TILE_PIXELS / u64::from(tile_width)) as u32);
+    let mut tiles = Vec::new();
+    for y in (0..height).step_by(tile_height as usize) {
+        for x in (0..width).step_by(tile_width as usize) {
+            tiles.push([left + x, top + y, tile_width.min(width - x), tile_height.min(height - y)]);
+        }
+    }
+    tiles
+}
+
+fn bits_for(count: u32) -> u32 {
+    32 - count.saturating_sub(1).leading_zeros()
+}
+
+impl FrameBuffers {
+    /// Buffers for a picture: the kept ones if they fit.
+    pub fn fit(gpu: &Gpu, kept: Option<Self>, input: &FrameInput, region: [u32; 4]) -> Result<Self, Error> {
+        let views = u64::from(lights::most_views(&input.scene.lights, input.has_sky()));
+        // As many texels as one binding holds.
+        let most_texels = gpu.limits.max_storage_buffer_binding_size / 4 / views.max(1);
+        let shadow_resolution = input.settings.shadow_resolution.min(most_texels.isqrt() as u32);
+        let largest = tiles(region).into_iter().map(|[_, _, w, h]| u64::from(w) * u64::from(h)).max();
+        let capacity = Capacity {
+            pixels: largest.unwrap_or(0),
+            segments: u64::from(input.draws.segment_count),
+            draws: input.draws.items.len() as u64,
+            lights: input.scene.lights.len() as u64,
+            views,
+            shadow_resolution,
+        };
+        if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
+            return Ok(buffers);
+        }
+        let uniform = |label, size: usize| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let film = || empty_storage(gpu, "film", 16 * capacity.pixels);
+        Ok(Self {
+            keys: empty_storage(gpu, "visibility keys", 8 * capacity.pixels)?,
+            film: [film()?, film()?, film()?],
+            staging: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("read-back"),
+                size: 48 * capacity.pixels,
+                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+            segment_work: empty_storage(gpu, "work of segments", 4 * capacity.segments)?,
+            block_work: empty_storage(gpu, "work of blocks", 4 * capacity.segments.div_ceil(u64::from(BLOCK)))?,
+            dispatch: empty_storage(gpu, "dispatch", 32)?,
+            draws: empty_storage(gpu, "instances", capacity.draws * size_of::<layout::Draw>() as u64)?,
+            lights: empty_storage(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
+            views: empty_storage(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
+            shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
+            uniform: uniform("frame", size_of::<layout::Frame>()),
+            shadow_uniform: uniform("shadow pass", 16),
+            capacity,
+        })
+    }
+
+    fn bytes(&self) -> u64 {
+        let film: u64 = self.film.iter().map(wgpu::Buffer::size).sum();
+        [
+            &self.keys,
+            &self.staging,
+            &self.segment_work,
+            &self.block_work,
+            &self.draws,
+            &self.lights,
+            &self.views,
+            &self.shadow_depths,
+        ]
+        .map(wgpu::Buffer::size)
+        .iter()
+        .sum::<u64>()
+            + film
+    }
+}
+
+/// Splits workgroups over two dimensions: a device takes at most 65535 in each.
+fn fold(workgroups: u32) -> (u32, u32) {
+    (workgroups.min(ROW), workgroups.div_ceil(ROW))
+}
+
+/// Records and runs the passes of one picture.
+pub(crate) struct Recorder<'a> {
+    gpu: &'a Gpu,
+    pipelines: &'a Pipelines,
+    input: &'a FrameInput<'a>,
+    frame: &'a FrameBuffers,
+    uniform: layout::Frame,
+    filter: PixelFilter,
+    timer: Timer,
+    /// Lights whose shadows are already drawn and stay.
+    static_lights: bool,
+    fiber_segments: u64,
+}
+
+impl<'a> Recorder<'a> {
+    pub fn new(
+        gpu: &'a Gpu,
+        pipelines: &'a Pipelines,
+        input: &'a FrameInput<'a>,
+        frame: &'a FrameBuffers,
+    ) -> Result<Self, Error> {
+        let FrameInput { scene, settings, view, draws, .. } = input;
+        let slot_bits = bits_for(draws.most_slots);
+        let depth_bits = (64 - STEP_BITS - slot_bits - bits_for(draws.segment_count)).min(*DEPTH_BITS.end());
+        if depth_bits < *DEPTH_BITS.start() {
+            return Err(Error::input(
+                "scene",
+                format!(
+                    "{} control points (instances counted each) with up to {} fibers are too many for one picture",
+                    draws.segment_count, draws.most_slots
+                ),
+            ));
+        }
+        let (depth_min, depth_max) = if draws.bounds.is_empty() { (0.0, 1.0) } else { view.depth_range(&draws.bounds) };
+        let background = scene.ambient;
+        gpu.queue.write_buffer(&frame.draws, 0, bytemuck::cast_slice(&draws.items));
+        Ok(Self {
+            gpu,
+            pipelines,
+            input,
+            frame,
+            uniform: layout::Frame {
+                viewer: view.viewer,
+                pixels_per_unit: view.pixels_per_unit as f32,
+                depth_min: depth_min as f32,
+                depth_scale: (1.0 / (depth_max - depth_min)) as f32,
+                near: view.near as f32,
+                segment_count: draws.segment_count,
+                draw_count: draws.items.len() as u32,
+                slot_bits,
+                step_bits: STEP_BITS,
+                depth_bits,
+                lod_pixels: settings.lod_pixels,
+                light_count: scene.lights.len() as u32,
+                physical: u32::from(settings.shading == Shading::Physical),
+                occlusion_table: u32::from(settings.occlusion == Occlusion::Table),
+                ambient: scene.ambient,
+                shadow_resolution: frame.capacity.shadow_resolution,
+                sky_shadow_view: lights::NONE,
+                background,
+                opaque_background: u32::from(!settings.transparent),
+                least_w: if view.orthographic { 1.0 } else { view.near as f32 },
+                ..Default::default()
+            },
+            filter: PixelFilter::new(settings.filter_width),
+            timer: Timer::new(gpu),
+            static_lights: false,
+            fiber_segments: 0,
+        })
+    }
+
+    fn bindings(&self) -> Bindings<'a> {
+        let (scene, frame) = (self.input.buffers, self.frame);
+        Bindings::from([
+            (0, &frame.uniform),
+            (1, &frame.draws),
+            (2, &scene.curves),
+            (3, &scene.positions),
+            (4, &scene.frames),
+            (5, &scene.radii),
+            (6, &scene.yarns),
+            (7, &scene.material_data),
+            (8, &scene.tables),
+            (9, &frame.lights),
+            (10, &frame.views),
+            (11, &frame.shadow_depths),
+            (12, &frame.segment_work),
+            (13, &frame.block_work),
+            (14, &frame.dispatch),
+            (15, &frame.keys),
+            (16, &frame.shadow_uniform),
+            (17, &frame.film[0]),
+            (18, &frame.film[1]),
+            (19, &frame.film[2]),
+        ])
+    }
+
+    /// Draws a region: left, top, width, height.
+    pub fn picture(
+        &mut self,
+        region: [u32; 4],
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Image, Error> {
+        let [left, top, width, height] = region;
+        let count = width as usize * height as usize;
+        let mut image = Image {
+            size: [width, height],
+            combined: vec![[0.0; 4]; count],
+            depth: vec![Image::EMPTY_DEPTH; count],
+            normal: vec![[0.0; 3]; count],
+            tangent: vec![[0.0; 3]; count],
+            object_id: vec![0; count],
+            statistics: Statistics::default(),
+        };
+        let tiles = tiles(region);
+        let samples = self.input.settings.samples;
+        let total = samples.saturating_mul(tiles.len() as u32);
+        for (number, tile) in tiles.iter().enumerate() {
+            for sample in 0..samples {
+                self.sample(*tile, sample)?;
+                let done = number as u32 * samples + sample + 1;
+                if progress(Progress { done, total }).is_break() {
+                    return Err(Error::Cancelled);
+                }
+            }
+            self.read_tile(*tile, [left, top], &mut image)?;
+        }
+        image.statistics = Statistics {
+            adapter: self.gpu.info.name.clone(),
+            segments: u64::from(self.input.draws.segment_count),
+            fiber_segments: self.fiber_segments,
+            knot_bytes: self.input.buffers.knot_bytes() + self.frame.segment_work.size(),
+            gpu_bytes: self.input.buffers.knot_bytes() + self.input.buffers.table_bytes() + self.frame.bytes(),
+            passes: self.timer.totals(),
+            uploaded_bytes: self.input.buffers.uploaded_bytes,
+        };
+        Ok(image)
+    }
+
+    /// One jittered sample of a tile.
+    fn sample(&mut self, tile: [u32; 4], index: u32) -> Result<(), Error> {
+        let FrameInput { scene, settings, view, draws, .. } = *self.input;
+        let [left, top, width, height] = tile;
+        let jitter = self.filter.offset(r2(index, settings.seed, 0));
+        self.uniform.size = [width, height];
+        self.uniform.sample_index = index;
+        self.uniform.pixel_from_render = view.pixel_from_render([left, top], jitter);
+
+        let bounds = draws.bounds;
+        let mut first_view_to_draw = 0;
+        if !bounds.is_empty() {
+            let resolution = self.frame.capacity.shadow_resolution;
+            let mut lights = LightSample::new(&scene.lights, view.origin, &bounds, resolution, index, settings.seed);
+            if self.static_lights {
+                first_view_to_draw = lights.views.len() as u32;
+            }
+            if self.input.has_sky() {
+                let toward = sphere(r2(index, settings.seed, 1));
+                self.uniform.sky_shadow_view = lights.add_sky(toward, &bounds, resolution);
+                self.uniform.sky_direction = toward.as_vec3();
+            }
+            self.gpu.queue.write_buffer(&self.frame.lights, 0, bytemuck::cast_slice(&lights.lights));
+            self.gpu.queue.write_buffer(&self.frame.views, 0, bytemuck::cast_slice(&lights.views));
+            let views = lights.views.len() as u32 - first_view_to_draw;
+            self.write_uniform();
+            self.shadows(first_view_to_draw, views);
+            self.static_lights = !scene.lights.iter().any(lights::is_soft);
+        } else {
+            self.write_uniform();
+        }
+        self.visibility(index == 0, width, height);
+        self.gpu.finish()?;
+        self.timer.collect(self.gpu)?;
+        if index == 0 {
+            self.check_work()?;
+        }
+        Ok(())
+    }
+
+    fn write_uniform(&self) {
+        self.gpu.queue.write_buffer(&self.frame.uniform, 0, bytemuck::bytes_of(&self.uniform));
+    }
+
+    fn encoder(&self) -> wgpu::CommandEncoder {
+        self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") })
+    }
+
+    /// Depth maps of `count` shadow views.
+    fn shadows(&mut self, first: u32, count: u32) {
+        if count == 0 {
+            return;
+        }
+        self.gpu.queue.write_buffer(&self.frame.shadow_uniform, 0, bytemuck::cast_slice(&[first, 0, 0, 0]));
+        let mut encoder = self.encoder();
+        let bytes = 4 * u64::from(self.frame.capacity.shadow_resolution).pow(2);
+        encoder.clear_buffer(&self.frame.shadow_depths, bytes * u64::from(first), Some(bytes * u64::from(count)));
+        let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
+        self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count));
+        self.timer.resolve(&mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Cull and scan (once a tile: the jitter is inside of the margin), visibility, resolve.
+    fn visibility(&mut self, first: bool, width: u32, height: u32) {
+        let mut encoder = self.encoder();
+        if self.uniform.segment_count > 0 {
+            if first {
+                let (x, y) = fold(self.uniform.segment_count.div_ceil(BLOCK));
+                self.record(&mut encoder, Pass::Cull, |pass| pass.dispatch_workgroups(x, y, 1));
+                self.record(&mut encoder, Pass::Scan, |pass| pass.dispatch_workgroups(1, 1, 1));
+            }
+            encoder.clear_buffer(&self.frame.keys, 0, None);
+            let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
+            for store in self.pipelines.stores.clone() {
+                self.record(&mut encoder, Pass::Cores(store), |pass| pass.dispatch_workgroups(x, y, 1));
+                let arguments = &self.frame.dispatch;
+                self.record(&mut encoder, Pass::Fibers(store), |pass| pass.dispatch_workgroups_indirect(arguments, 0));
+            }
+        } else {
+            encoder.clear_buffer(&self.frame.keys, 0, None);
+        }
+        let groups = (width.div_ceil(8), height.div_ceil(8));
+        self.record(&mut encoder, Pass::Resolve, |pass| pass.dispatch_workgroups(groups.0, groups.1, 1));
+        self.timer.resolve(&mut encoder);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: Pass,
+        dispatch: impl FnOnce(&mut wgpu::ComputePass),
+    ) {
+        let bindings = self.bindings();
+        let timestamps = self.timer.begin(pass.entry_point());
+        self.pipelines.record(self.gpu, encoder, pass, &bindings, timestamps, dispatch);
+    }
+
+    /// Bytes of a buffer, copied through the staging buffer.
+    fn read(&self, copies: &[(&wgpu::Buffer, u64)]) -> Result<Vec<u8>, Error> {
+        let mut encoder = self.encoder();
+        let mut at = 0;
+        for (buffer, bytes) in copies {
+            encoder.copy_buffer_to_buffer(buffer, 0, &self.frame.staging, at, *bytes);
+            at += bytes;
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        let slice = self.frame.staging.slice(..at);
+        slice.map_async(wgpu::MapMode::Read, |_| {});
+        self.gpu.finish()?;
+        let data = slice.get_mapped_range().map_err(|error| self.gpu.error(error.to_string()))?.to_vec();
+        self.frame.staging.unmap();
+        Ok(data)
+    }
+
+    fn check_work(&mut self) -> Result<(), Error> {
+        if self.uniform.segment_count == 0 {
+            return Ok(());
+        }
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(&[(&self.frame.dispatch, 32)])?);
+        if words[4] != 0 {
+            return Err(Error::input("scene", "more than 4.29 billion fiber segments are visible in one picture"));
+        }
+        self.fiber_segments += u64::from(words[3]);
+        Ok(())
+    }
+
+    fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], image: &mut Image) -> Result<(), Error> {
+        let [left, top, width, height] = tile;
+        let pixels = width as usize * height as usize;
+        let bytes = 16 * pixels as u64;
+        let film = &self.frame.film;
+        let data = self.read(&[(&film[0], bytes), (&film[1], bytes), (&film[2], bytes)])?;
+        let values: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&data);
+        let (color, rest) = values.split_at(pixels);
+        let (normal, tangent) = rest.split_at(pixels);
+        let scale = 1.0 / self.input.settings.samples as f32;
+        let direction = |v: [f32; 4]| {
+            // Background samples pull the mean towards zero; its direction is that of the surface.
+            Vec3::new(v[0], v[1], v[2]).normalize_or_zero().to_array()
+        };
+        for y in 0..height as usize {
+            let row = (top as usize - origin[1] as usize + y) * image.size[0] as usize + (left - origin[0]) as usize;
+            for x in 0..width as usize {
+                let (from, to) = (y * width as usize + x, row + x);
+                image.combined[to] = color[from].map(|c| c * scale);
+                image.depth[to] = normal[from][3];
+                image.normal[to] = direction(normal[from]);
+                image.tangent[to] = direction(tangent[from]);
+                image.object_id[to] = tangent[from][3] as u32;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_a_region_once() {
+        let region = [3, 5, 5000, 4100];
+        let mut seen = vec![0_u8; 5000 * 4100];
+        for [left, top, width, height] in tiles(region) {
+            assert!(u64::from(width) * u64::from(height) <= TILE_PIXELS);
+            for y in top..top + height {
+                for x in left..left + width {
+                    seen[((y - 5) * 5000 + x - 3) as usize] += 1;
+                }
+            }
+        }
+        assert!(seen.iter().all(|n| *n == 1));
+    }
+
+    #[test]
+    fn bits_hold_the_largest_index() {
+        for (count, bits) in [(1, 0), (2, 1), (3, 2), (256, 8), (257, 9)] {
+            assert_eq!(bits_for(count), bits);
+        }
+    }
+}

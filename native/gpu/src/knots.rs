@@ -1,0 +1,163 @@
+//! Strands as the shaders read them: padded, packed, recentred.
+
+use glam::{DVec3, Vec3};
+use lisle_core::sampling::hash_combine;
+use lisle_core::strands::Strands;
+use lisle_core::yarn::{Twist, Yarn};
+
+use crate::layout::{self, KNOT_BEGINS_SEGMENT};
+use crate::view::Bounds;
+
+/// What does not change from frame to frame: radii, length coordinates, twists.
+///
+/// Every curve has one knot more at its start and one (open) or two (closed) more at its end than its strand, so that the
+/// window of four knots about a segment never leaves the curve.
+pub(crate) struct RestKnots {
+    /// Length coordinate, as a 32-bit fraction of the curve's length.
+    pub lengths: Vec<u32>,
+    /// Radius as a 16-bit fraction of `radius_max` with flags, and curve.
+    pub radii: Vec<[u32; 2]>,
+    pub curves: Vec<layout::Curve>,
+    pub radius_max: f64,
+    /// For every padded knot, the strand's knot that it copies.
+    source: Vec<u32>,
+    /// Padded knots that continue an open curve by reflection, with the neighbours they are made from (inner, next).
+    reflected: Vec<(u32, u32, u32)>,
+}
+
+/// What changes: positions and frames.
+pub(crate) struct MovingKnots {
+    /// Positions relative to `center`, three floats each.
+    pub positions: Vec<f32>,
+    /// Length coordinate and octahedral normal.
+    pub frames: Vec<[u32; 2]>,
+    pub center: DVec3,
+    /// Of the centre lines, relative to `center`.
+    pub bounds: Bounds,
+}
+
+/// Turns over a whole curve: whole part and rest.
+fn split(turns: f64) -> (u32, f32) {
+    (turns.floor() as u32, turns.fract() as f32)
+}
+
+/// A unit vector as the octahedral map in two 16-bit signed fractions.
+fn pack_unit_vector(v: [f32; 3]) -> u32 {
+    let v = Vec3::from(v);
+    let v = v / (v.x.abs() + v.y.abs() + v.z.abs());
+    let wrap = |a: f32, b: f32| (1.0 - b.abs()).copysign(a);
+    let (x, y) = if v.z < 0.0 { (wrap(v.x, v.y), wrap(v.y, v.x)) } else { (v.x, v.y) };
+    let code = |c: f32| u32::from((c.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    code(x) | (code(y) << 16)
+}
+
+impl RestKnots {
+    pub fn new(strands: &Strands, yarn: &Yarn) -> Self {
+        let radius_max = f64::from(strands.radii().iter().copied().fold(0.0, f32::max));
+        let padded = strands.positions().len() + 3 * strands.closed().len();
+        let mut rest = Self {
+            lengths: Vec::with_capacity(padded),
+            radii: Vec::with_capacity(padded),
+            curves: Vec::with_capacity(strands.closed().len()),
+            radius_max,
+            source: Vec::with_capacity(padded),
+            reflected: Vec::new(),
+        };
+        for curve in 0..strands.closed().len() {
+            rest.add_curve(strands, yarn, curve);
+        }
+        rest
+    }
+
+    fn add_curve(&mut self, strands: &Strands, yarn: &Yarn, curve: usize) {
+        let (first, end) = (strands.offsets()[curve] as usize, strands.offsets()[curve + 1] as usize);
+        let closed = strands.closed()[curve];
+        let total = strands.total_lengths()[curve];
+        // A closed curve's end is its start: 2³² is 0. An open one's is the largest code.
+        let unit = if closed { 4_294_967_296.0 } else { 4_294_967_295.0 };
+        let code = |knot: usize| (strands.lengths()[knot] / total * unit).round() as u64 as u32;
+
+        let turns = Twist::turns(yarn, total, strands.reference_radii()[curve], closed);
+        let [(ply_whole, ply_rest), (fiber_whole, fiber_rest), (migration_whole, migration_rest)] = turns.map(split);
+        self.curves.push(layout::Curve {
+            ply_whole,
+            ply_rest,
+            fiber_whole,
+            fiber_rest,
+            migration_whole,
+            migration_rest,
+            closed_periods: if closed { migration_whole.max(1) } else { 0 },
+            seed: hash_combine(0x11c5_1e00, curve as u32),
+        });
+
+        let start = self.source.len() as u32;
+        let mut push = |knot: usize, length: u32, begins: bool| {
+            self.source.push(knot as u32);
+            self.lengths.push(length);
+            let radius = (f64::from(strands.radii()[knot]) / self.radius_max * 65535.0).round() as u32;
+            self.radii.push([radius | if begins { KNOT_BEGINS_SEGMENT } else { 0 }, curve as u32]);
+        };
+        if closed {
+            push(end - 1, code(end - 1), false);
+            (first..end).for_each(|knot| push(knot, code(knot), true));
+            push(first, code(first), false);
+            push(first + 1, code(first + 1), false);
+        } else {
+            push(first, code(first).wrapping_mul(2).wrapping_sub(code(first + 1)), false);
+            (first..end).for_each(|knot| push(knot, code(knot), knot + 1 < end));
+            push(end - 1, code(end - 1).wrapping_mul(2).wrapping_sub(code(end - 2)), false);
+            let last = start + (end - first) as u32 + 1;
+            self.reflected.push((start, start + 1, start + 2));
+            self.reflected.push((last, last - 1, last - 2));
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.source.len()
+    }
+
+    pub fn moving(&self, strands: &Strands) -> MovingKnots {
+        let mut bounds = Bounds::EMPTY;
+        strands.positions().iter().for_each(|p| bounds.include(Vec3::from(*p).as_dvec3()));
+        let center = 0.5 * (bounds.min + bounds.max);
+        let relative = |knot: u32| (Vec3::from(strands.positions()[knot as usize]).as_dvec3() - center).as_vec3();
+        let mut positions: Vec<f32> = Vec::with_capacity(3 * self.len());
+        self.source.iter().for_each(|knot| positions.extend(relative(*knot).to_array()));
+        for (end, inner, next) in &self.reflected {
+            for axis in 0..3 {
+                let at = |knot: &u32| 3 * *knot as usize + axis;
+                positions[at(end)] = 2.0 * positions[at(inner)] - positions[at(next)];
+            }
+        }
+        let normals = strands.normals();
+        let frame = |(knot, length): (&u32, &u32)| [*length, pack_unit_vector(normals[*knot as usize])];
+        MovingKnots {
+            positions,
+            frames: self.source.iter().zip(&self.lengths).map(frame).collect(),
+            center,
+            bounds: Bounds { min: bounds.min - center, max: bounds.max - center },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unit_vectors_survive_packing() {
+        let unpack = |code: u32| {
+            let e = [code as u16 as i16, (code >> 16) as u16 as i16].map(|c| f32::from(c) / 32767.0);
+            let mut v = Vec3::new(e[0], e[1], 1.0 - e[0].abs() - e[1].abs());
+            let fold = (-v.z).max(0.0);
+            v.x -= fold.copysign(v.x);
+            v.y -= fold.copysign(v.y);
+            v.normalize()
+        };
+        for i in 0..2000 {
+            let z = f32::from(i as i16) / 1000.0 - 0.9995;
+            let v = Vec3::new((1.0 - z * z).sqrt() * (i as f32).cos(), (1.0 - z * z).sqrt() * (i as f32).sin(), z);
+            assert!(unpack(pack_unit_vector(v.to_array())).distance(v) < 1e-4, "{v}");
+        }
+    }
+}

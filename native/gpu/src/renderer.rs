@@ -1,0 +1,130 @@
+//! The renderer: one device, and what it keeps between pictures.
+
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+
+use crate::device::Gpu;
+use crate::frame::{FrameBuffers, FrameInput, Recorder};
+use crate::pipelines::Pipelines;
+use crate::tables::TableCache;
+use crate::upload::SceneBuffers;
+use crate::view::View;
+use crate::{AdapterInfo, Error, Image, Scene, Settings, lights};
+
+/// How far a picture is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Samples per pixel done, over all tiles: at most `total`.
+    pub done: u32,
+    /// Samples per pixel × tiles.
+    pub total: u32,
+}
+
+/// Draws scenes on one adapter. Thread-safe: pictures are drawn one at a time.
+pub struct Renderer {
+    gpu: Gpu,
+    pipelines: Pipelines,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    tables: TableCache,
+    scene: Option<SceneBuffers>,
+    frame: Option<FrameBuffers>,
+}
+
+impl Renderer {
+    /// Opens the first adapter whose name contains `adapter` (in any case), or the best one.
+    ///
+    /// # Errors
+    /// [`Error::NoAdapter`] if none answers; [`Error::Device`] if it refuses.
+    pub fn new(adapter: Option<&str>) -> Result<Self, Error> {
+        let gpu = Gpu::new(adapter)?;
+        let wide = gpu.info.wide_atomics;
+        Self::with_gpu(gpu, wide)
+    }
+
+    /// The same without 64-bit atomics, even where the adapter has them: two visibility passes, the same picture.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_narrow_atomics(adapter: Option<&str>) -> Result<Self, Error> {
+        Self::with_gpu(Gpu::new(adapter)?, false)
+    }
+
+    fn with_gpu(gpu: Gpu, wide: bool) -> Result<Self, Error> {
+        let pipelines = Pipelines::new(&gpu, wide)?;
+        Ok(Self { gpu, pipelines, state: Mutex::default() })
+    }
+
+    /// The adapter in use.
+    pub fn adapter(&self) -> &AdapterInfo {
+        &self.gpu.info
+    }
+
+    /// Draws a picture. `progress` is called after every sample and can stop the work.
+    ///
+    /// The same scene and settings give the same bits on one adapter, whatever was drawn before.
+    ///
+    /// # Errors
+    /// [`Error::Input`], [`Error::Yarn`] or [`Error::Material`] for what cannot be drawn, [`Error::Device`] for what the adapter
+    /// cannot do, [`Error::Cancelled`].
+    pub fn render(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Image, Error> {
+        let region = check(scene, settings)?;
+        let view = View::new(&scene.camera, settings.size)?;
+        // A panic elsewhere leaves at worst stale buffers behind, which the update below replaces.
+        let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let State { tables, scene: kept_scene, frame: kept_frame } = &mut *state;
+        let (buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, tables)?;
+        let draws = buffers.draws(scene, &which, view.origin)?;
+        let input = FrameInput { scene, settings, view: &view, draws: &draws, buffers: &buffers };
+        let frame = FrameBuffers::fit(&self.gpu, kept_frame.take(), &input, region)?;
+        let mut recorder = Recorder::new(&self.gpu, &self.pipelines, &input, &frame)?;
+        let image = recorder.picture(region, progress);
+        drop(recorder);
+        *kept_scene = Some(buffers);
+        *kept_frame = Some(frame);
+        image
+    }
+}
+
+/// Checks scene and settings; the region to draw: left, top, width, height.
+fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
+    let [width, height] = settings.size;
+    let invalid = |what: &str, reason: String| Err(Error::input(what, reason));
+    if width == 0 || height == 0 || width > 65536 || height > 65536 {
+        return invalid("size", format!("{width}×{height}: expected 1 to 65536 pixels each"));
+    }
+    let region = settings.region.unwrap_or([0, 0, width, height]);
+    let [left, top, w, h] = region;
+    if w == 0 || h == 0 || left.saturating_add(w) > width || top.saturating_add(h) > height {
+        return invalid("region", format!("{w}×{h} at ({left}, {top}) is not inside of {width}×{height} pixels"));
+    }
+    if settings.samples == 0 {
+        return invalid("samples", "0: expected at least 1".into());
+    }
+    for (what, value) in [("lod_pixels", settings.lod_pixels), ("filter_width", settings.filter_width)] {
+        if !(0.0..=100.0).contains(&value) {
+            return invalid(what, format!("{value}: expected 0 to 100 pixels"));
+        }
+    }
+    if !(16..=16384).contains(&settings.shadow_resolution) {
+        return invalid("shadow_resolution", format!("{}: expected 16 to 16384 texels", settings.shadow_resolution));
+    }
+    if !scene.ambient.is_finite() || scene.ambient.min_element() < 0.0 {
+        return invalid("ambient", format!("{}: expected finite radiances of at least 0", scene.ambient));
+    }
+    lights::validate(&scene.lights)?;
+    for object in &scene.objects {
+        let named = |source| Error::Yarn { object: object.name.clone(), source };
+        object.yarn.validate().map_err(named)?;
+        object.material.validate().map_err(|source| Error::Material { object: object.name.clone(), source })?;
+    }
+    Ok(region)
+}

@@ -1,0 +1,105 @@
+//! Low-discrepancy sequences and what is drawn from them.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use lisle_core::sampling::{hash_combine, unit_from_hash};
+
+/// Point `index` of the R2 sequence (Roberts 2018: powers of the plastic number), shifted by `seed` and `dimension`.
+///
+/// With seed 0 and dimension 0 it starts at (0.5, 0.5): the first sample of a pixel is its centre.
+pub fn r2(index: u32, seed: u32, dimension: u32) -> [f64; 2] {
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let shift = |axis| {
+        if seed == 0 && dimension == 0 {
+            0.5
+        } else {
+            unit_from_hash(hash_combine(hash_combine(seed, dimension), axis))
+        }
+    };
+    let i = f64::from(index);
+    [(shift(0) + i / PLASTIC).fract(), (shift(1) + i / (PLASTIC * PLASTIC)).fract()]
+}
+
+/// A uniform direction.
+pub fn sphere([u, v]: [f64; 2]) -> DVec3 {
+    let z = 1.0 - 2.0 * u;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    DVec3::new(r * (TAU * v).cos(), r * (TAU * v).sin(), z)
+}
+
+/// A uniform point of the unit disc.
+pub fn disc([u, v]: [f64; 2]) -> [f64; 2] {
+    let r = u.sqrt();
+    [r * (TAU * v).cos(), r * (TAU * v).sin()]
+}
+
+/// Two unit vectors that complete `z` to a right-handed frame (Duff et al. 2017).
+pub fn basis(z: DVec3) -> (DVec3, DVec3) {
+    z.any_orthonormal_pair()
+}
+
+/// Offsets drawn with the density of a Blackman–Harris filter, so that every sample has the same weight.
+pub struct PixelFilter {
+    /// Cumulative distribution at evenly spaced offsets from −1 to 1.
+    cumulative: Vec<f64>,
+    half_width: f64,
+}
+
+impl PixelFilter {
+    /// `width`: pixels from one end of the filter to the other, as in Cycles; 0 samples the pixel's centre alone.
+    pub fn new(width: f32) -> Self {
+        const STEPS: usize = 1024;
+        // Harris 1978, the four-term window.
+        let window = |x: f64| {
+            let t = TAU * (0.5 + 0.5 * x);
+            0.35875 - 0.48829 * t.cos() + 0.14128 * (2.0 * t).cos() - 0.01168 * (3.0 * t).cos()
+        };
+        let mut cumulative = vec![0.0; STEPS + 1];
+        for i in 0..STEPS {
+            let x = (i as f64 + 0.5) / STEPS as f64 * 2.0 - 1.0;
+            cumulative[i + 1] = cumulative[i] + window(x);
+        }
+        let total = cumulative[STEPS];
+        cumulative.iter_mut().for_each(|c| *c /= total);
+        Self { cumulative, half_width: 0.5 * f64::from(width) }
+    }
+
+    /// Offset from the pixel's centre, pixels, for two uniform numbers.
+    pub fn offset(&self, uniform: [f64; 2]) -> [f64; 2] {
+        uniform.map(|u| {
+            let steps = self.cumulative.len() - 1;
+            let i = self.cumulative.partition_point(|c| *c <= u).clamp(1, steps);
+            let (low, high) = (self.cumulative[i - 1], self.cumulative[i]);
+            let share = if high > low { (u - low) / (high - low) } else { 0.5 };
+            ((i as f64 - 1.0 + share) / steps as f64 * 2.0 - 1.0) * self.half_width
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_sample_is_the_centre() {
+        let offset = PixelFilter::new(1.5).offset(r2(0, 0, 0));
+        assert!(offset[0].abs() < 1e-12 && offset[1].abs() < 1e-12, "{offset:?}");
+    }
+
+    #[test]
+    fn offsets_have_the_filters_spread() {
+        // Variance of the Blackman–Harris window over [−1, 1], by its own quadrature: 0.0652.
+        let filter = PixelFilter::new(2.0);
+        let n = 20_000;
+        let variance = (0..n).map(|i| filter.offset(r2(i, 0, 0))[0].powi(2)).sum::<f64>() / f64::from(n);
+        assert!((variance - 0.0652).abs() < 0.001, "{variance}");
+    }
+
+    #[test]
+    fn directions_cover_the_sphere() {
+        let n = 4096;
+        let mean: DVec3 = (0..n).map(|i| sphere(r2(i, 3, 1))).sum::<DVec3>() / f64::from(n);
+        assert!(mean.length() < 0.01, "{mean}");
+    }
+}

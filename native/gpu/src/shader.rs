@@ -1,0 +1,189 @@
+//! The WGSL of each pass: which files it is made of. Files of `passes/` hold bindings and entry points, all others pure functions.
+
+macro_rules! files {
+    ($($path:literal),* $(,)?) => { &[$(($path, include_str!(concat!("../../../shaders/", $path)))),*] };
+}
+
+type Files = &'static [(&'static str, &'static str)];
+
+const SCENE: Files = files![
+    "layout/scene.wgsl",
+    "math/hash.wgsl",
+    "math/pack.wgsl",
+    "math/view.wgsl",
+    "curve/segment.wgsl",
+    "yarn/fiber.wgsl",
+    "yarn/detail.wgsl",
+    "passes/scene.wgsl",
+];
+const WORK: Files = files!["passes/work.wgsl"];
+const RASTER: Files = files![
+    "math/capsule.wgsl",
+    "yarn/core_fiber.wgsl",
+    "passes/tables.wgsl",
+    "passes/key.wgsl",
+    "passes/fiber_line.wgsl",
+    "passes/core_line.wgsl",
+];
+const SHADING: Files = files![
+    "scattering/angles.wgsl",
+    "scattering/longitudinal.wgsl",
+    "scattering/azimuthal.wgsl",
+    "scattering/physical.wgsl",
+    "scattering/simple.wgsl",
+    "light/sample.wgsl",
+    "light/self_shadow.wgsl",
+    "passes/lighting.wgsl",
+    "passes/resolve.wgsl",
+];
+
+/// How visibility keys reach memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Store {
+    /// One 64-bit atomic.
+    Wide,
+    /// Upper halves, by 32-bit atomics.
+    High,
+    /// Lower halves where the upper has won.
+    Low,
+}
+
+/// A compute pass; its entry point has the name of its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    Cull,
+    Scan,
+    Fibers(Store),
+    Cores(Store),
+    Shadow,
+    Resolve,
+}
+
+impl Pass {
+    pub const ALL: [Self; 10] = [
+        Self::Cull,
+        Self::Scan,
+        Self::Fibers(Store::Wide),
+        Self::Fibers(Store::High),
+        Self::Fibers(Store::Low),
+        Self::Cores(Store::Wide),
+        Self::Cores(Store::High),
+        Self::Cores(Store::Low),
+        Self::Shadow,
+        Self::Resolve,
+    ];
+
+    pub fn entry_point(self) -> &'static str {
+        match self {
+            Self::Cull => "cull",
+            Self::Scan => "scan",
+            Self::Fibers(_) => "visibility_fibers",
+            Self::Cores(_) => "visibility_cores",
+            Self::Shadow => "shadow",
+            Self::Resolve => "resolve",
+        }
+    }
+
+    /// The pass's files in one piece.
+    pub fn source(self) -> String {
+        let store = |store| match store {
+            Store::Wide => files!["passes/store_wide.wgsl"],
+            Store::High => files!["passes/store_high.wgsl"],
+            Store::Low => files!["passes/store_low.wgsl"],
+        };
+        let parts: Vec<Files> = match self {
+            Self::Cull => vec![SCENE, WORK, files!["passes/cull.wgsl"]],
+            Self::Scan => vec![SCENE, WORK, files!["passes/scan.wgsl"]],
+            Self::Fibers(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_fibers.wgsl"]],
+            Self::Cores(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_cores.wgsl"]],
+            Self::Shadow => vec![SCENE, files!["math/capsule.wgsl", "passes/work.wgsl", "passes/shadow.wgsl"]],
+            Self::Resolve => vec![SCENE, RASTER, SHADING],
+        };
+        parts.iter().flat_map(|files| files.iter()).map(|(_, text)| *text).collect::<Vec<_>>().join("\n")
+    }
+
+    fn needs_wide_atomics(self) -> bool {
+        matches!(self, Self::Fibers(Store::Wide) | Self::Cores(Store::Wide))
+    }
+
+    /// Parsed and validated; the bindings that the entry point uses.
+    pub fn reflect(self) -> Result<Reflection, String> {
+        let source = self.source();
+        let module = naga::front::wgsl::parse_str(&source).map_err(|e| e.emit_to_string(&source))?;
+        let mut capabilities = naga::valid::Capabilities::default();
+        if self.needs_wide_atomics() {
+            capabilities |=
+                naga::valid::Capabilities::SHADER_INT64 | naga::valid::Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
+        }
+        let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+            .validate(&module)
+            .map_err(|e| e.emit_to_string(&source))?;
+        let entry = info.get_entry_point(0);
+        let bindings = module
+            .global_variables
+            .iter()
+            .filter(|(handle, _)| !entry[*handle].is_empty())
+            .filter_map(|(_, variable)| variable.binding.map(|b| b.binding))
+            .collect();
+        Ok(Reflection { module, bindings })
+    }
+}
+
+/// What naga finds in a pass.
+pub struct Reflection {
+    pub module: naga::Module,
+    /// Binding numbers of group 0 that the entry point uses.
+    pub bindings: Vec<u32>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::shared_structs;
+
+    #[test]
+    fn every_pass_is_valid() {
+        for pass in Pass::ALL {
+            if let Err(message) = pass.reflect() {
+                panic!("{pass:?}:\n{message}");
+            }
+        }
+    }
+
+    /// Differences between the Rust structs and those of a WGSL module.
+    fn mismatches(module: &naga::Module) -> Vec<String> {
+        let mut found = Vec::new();
+        for (name, size, members) in shared_structs() {
+            let wgsl = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name));
+            let Some((_, naga::Type { inner: naga::TypeInner::Struct { members: theirs, span }, .. })) = wgsl else {
+                found.push(format!("{name}: no such struct"));
+                continue;
+            };
+            let theirs: Vec<_> =
+                theirs.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize)).collect();
+            let ours: Vec<_> = members.iter().map(|(n, o)| ((*n).to_owned(), *o)).collect();
+            if *span as usize != size {
+                found.push(format!("{name}: {size} bytes here, {span} there"));
+            }
+            if theirs != ours {
+                found.push(format!("{name}: {ours:?} here, {theirs:?} there"));
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn shared_structs_match_the_shaders() {
+        let module = Pass::Resolve.reflect().expect("valid").module;
+        assert_eq!(mismatches(&module), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_moved_member_is_noticed() {
+        let source = Pass::Resolve.source();
+        let moved = source.replace("    object_id: u32,\n    seed: u32,", "    seed: u32,\n    object_id: u32,");
+        assert_ne!(source, moved);
+        let module = naga::front::wgsl::parse_str(&moved).expect("parses");
+        assert_eq!(mismatches(&module).len(), 1);
+    }
+}

@@ -1,0 +1,148 @@
+//! Yarn kinds and materials as the shaders read them, with all their tables in one buffer.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec4};
+use lisle_core::scattering::{Material, ScatteringTables, highlight_scale};
+use lisle_core::yarn::{FiberTable, Variate, Yarn};
+use lisle_precompute::Tables;
+
+use crate::layout;
+
+/// One buffer of tables and the offsets into it.
+#[derive(Default)]
+pub(crate) struct TableBuffer {
+    pub floats: Vec<f32>,
+    pub yarns: Vec<layout::Yarn>,
+    pub materials: Vec<layout::Material>,
+}
+
+impl TableBuffer {
+    fn append(&mut self, values: impl IntoIterator<Item = f32>) -> u32 {
+        let first = self.floats.len() as u32;
+        self.floats.extend(values);
+        first
+    }
+
+    pub fn add_yarn(&mut self, yarn: &Yarn, tables: &Tables) {
+        let fibers = FiberTable::new(yarn);
+        let rows = (0..fibers.radius.len())
+            .flat_map(|i| [fibers.radius[i], fibers.angle_turns[i], fibers.migration_turns[i]].map(|x| x as f32));
+        let fiber_table = self.append(rows);
+        let core = &tables.core_fiber;
+        let core_table = self.append(core.texels.iter().flatten().copied());
+        let shadow_table = self.append(tables.self_shadow.optical_depth.iter().copied());
+        let occlusion_table = self.append(tables.occlusion.visibility.iter().copied());
+
+        let outer = yarn.outer_radius();
+        let (loop_chance, hair_chance) = yarn.flyaway_chances();
+        let fly = &yarn.flyaways;
+        let scaled = |v: Variate, by: f64| [(v.mean / by) as f32, (v.deviation / by) as f32];
+        let axis = yarn.mean_axis();
+        let [loop_radius_mean, loop_radius_deviation] = scaled(fly.loop_r_max, axis);
+        let [tip_min_mean, tip_min_deviation] = scaled(fly.hair_r_min, axis);
+        let [tip_span_mean, tip_span_deviation] = scaled(fly.hair_r_span, axis);
+        let [width_mean, width_deviation] = scaled(fly.hair_z_span, yarn.migration_period());
+        let [turns_mean, turns_deviation] = scaled(fly.hair_theta_span, std::f64::consts::TAU);
+        self.yarns.push(layout::Yarn {
+            plies: yarn.plies,
+            fibers: yarn.fibers_per_ply,
+            flyaway_fibers: yarn.flyaway_fibers(),
+            core_layers: core.layers as u32,
+            ply_distance: (yarn.ply_distance() / outer) as f32,
+            ellipse_short: (yarn.ellipse_short / outer) as f32,
+            ellipse_long: (yarn.ellipse_long / outer) as f32,
+            fiber_radius: (yarn.fiber_radius / outer) as f32,
+            ply_sign: yarn.ply_twist.signum() as f32,
+            fiber_sign: yarn.fiber_twist.signum() as f32,
+            r_min: yarn.r_min as f32,
+            loop_chance: loop_chance as f32,
+            hair_chance: hair_chance as f32,
+            loop_radius_mean,
+            loop_radius_deviation,
+            tip_min_mean,
+            tip_min_deviation,
+            tip_span_mean,
+            tip_span_deviation,
+            width_mean,
+            width_deviation,
+            turns_mean,
+            turns_deviation,
+            fiber_table,
+            core_table,
+            core_length: core.length as u32,
+            core_width: core.width as u32,
+            core_half_width: core.half_width,
+            shadow_table,
+            shadow_slices: tables.self_shadow.slices as u32,
+            shadow_size: tables.self_shadow.size as u32,
+            shadow_extent: tables.self_shadow.extent,
+            occlusion_cubic: Vec4::from(tables.occlusion.cubic),
+            occlusion_table,
+            occlusion_size: tables.occlusion.size as u32,
+            occlusion_extent: tables.occlusion.extent,
+            bound: bound(yarn) as f32,
+        });
+    }
+
+    pub fn add_material(&mut self, material: &Material) {
+        let tables = ScatteringTables::new(material);
+        let columns = [
+            tables.root_integral_r,
+            tables.root_integral_tt,
+            tables.ambient_reflect,
+            tables.ambient_reflect_grazing,
+            tables.ambient_transmit,
+        ];
+        let table_size = columns[0].len() as u32;
+        let table = self.append(columns.iter().flatten().map(|x| *x as f32));
+        let color = |c: DVec3| c.as_vec3();
+        self.materials.push(layout::Material {
+            color_r: color(material.color_r),
+            beta_r: material.beta_r_rad as f32,
+            color_tt: color(material.color_tt),
+            beta_tt: material.beta_tt_rad as f32,
+            diffuse: color(material.diffuse),
+            diffuse_weight: material.diffuse_weight as f32,
+            specular: color(material.specular),
+            specular_beta: material.specular_beta_rad as f32,
+            gamma_tt: material.gamma_tt_rad as f32,
+            azimuthal_tt: tables.azimuthal_tt as f32,
+            highlight_scale: highlight_scale(material.specular_beta_rad) as f32,
+            table,
+            table_size,
+            ..Default::default()
+        });
+    }
+}
+
+/// Distance from the yarn centre that no fiber leaves, in outer radii: the stand-in for a normal variate is within ±3 deviations.
+pub(crate) fn bound(yarn: &Yarn) -> f64 {
+    let fly = &yarn.flyaways;
+    let most = |v: Variate| v.mean + 3.0 * v.deviation;
+    let relative = (most(fly.loop_r_max)).max(most(fly.hair_r_min) + most(fly.hair_r_span)) / yarn.mean_axis();
+    let ply =
+        yarn.ellipse_long.max(yarn.ellipse_short) * if yarn.flyaway_fibers() > 0 { relative.max(1.0) } else { 1.0 };
+    (yarn.ply_distance() + ply + yarn.fiber_radius) / yarn.outer_radius()
+}
+
+/// Precomputed tables of recent yarns, so that a change of camera or material costs none of them.
+#[derive(Default)]
+pub(crate) struct TableCache {
+    entries: Vec<(Yarn, Arc<Tables>)>,
+}
+
+impl TableCache {
+    pub fn get(&mut self, yarn: &Yarn) -> Arc<Tables> {
+        const KEPT: usize = 32;
+        if let Some((_, tables)) = self.entries.iter().find(|(known, _)| known == yarn) {
+            return Arc::clone(tables);
+        }
+        let tables = Arc::new(Tables::new(yarn));
+        if self.entries.len() == KEPT {
+            self.entries.remove(0);
+        }
+        self.entries.push((yarn.clone(), Arc::clone(&tables)));
+        tables
+    }
+}

@@ -1,0 +1,265 @@
+//! The scene's yarns on the GPU: what is static stays there from frame to frame.
+
+use std::sync::Arc;
+
+use bytemuck::Pod;
+use glam::{DMat4, DVec3, Vec4};
+use lisle_core::sampling::hash_combine;
+use lisle_core::scattering::Material;
+use lisle_core::strands::Yarns;
+use lisle_core::yarn::Yarn;
+
+use crate::device::Gpu;
+use crate::knots::RestKnots;
+use crate::layout;
+use crate::tables::{TableBuffer, TableCache, bound};
+use crate::view::Bounds;
+use crate::{Error, Object, Scene};
+
+/// A set of curves with one kind of yarn, as uploaded; instances share it.
+struct Upload {
+    yarns: Arc<Yarns>,
+    yarn: Arc<Yarn>,
+    knots: RestKnots,
+    first_knot: u32,
+    center: DVec3,
+    bounds: Bounds,
+}
+
+/// Whether two shapes are frames of the same rest shape.
+fn same_rest(a: &Yarns, b: &Yarns) -> bool {
+    std::ptr::eq(a.strands().lengths(), b.strands().lengths()) && std::ptr::eq(a.strands().radii(), b.strands().radii())
+}
+
+/// Buffers of the yarns, and what they hold.
+pub(crate) struct SceneBuffers {
+    uploads: Vec<Upload>,
+    kinds: Vec<Arc<Yarn>>,
+    materials: Vec<Arc<Material>>,
+    pub positions: wgpu::Buffer,
+    pub frames: wgpu::Buffer,
+    pub radii: wgpu::Buffer,
+    pub curves: wgpu::Buffer,
+    pub yarns: wgpu::Buffer,
+    pub material_data: wgpu::Buffer,
+    pub tables: wgpu::Buffer,
+    pub uploaded_bytes: u64,
+}
+
+/// The instances to draw.
+pub(crate) struct Draws {
+    pub items: Vec<layout::Draw>,
+    pub segment_count: u32,
+    /// Render space, with the yarns' thickness and flyaways.
+    pub bounds: Bounds,
+    /// Most slots (fibers and cores) of any yarn.
+    pub most_slots: u32,
+}
+
+/// A storage buffer that holds `data`, or a little if that is empty.
+pub(crate) fn storage<T: Pod>(gpu: &Gpu, label: &str, data: &[T]) -> Result<wgpu::Buffer, Error> {
+    let buffer = empty_storage(gpu, label, size_of_val(data) as u64)?;
+    gpu.queue.write_buffer(&buffer, 0, bytemuck::cast_slice(data));
+    Ok(buffer)
+}
+
+/// A storage buffer of at least that size.
+pub(crate) fn empty_storage(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::Buffer, Error> {
+    let limit = gpu.limits.max_storage_buffer_binding_size.min(gpu.limits.max_buffer_size);
+    if bytes > limit {
+        return Err(gpu.error(format!("{label} need {} MiB; a buffer holds at most {} MiB", bytes >> 20, limit >> 20)));
+    }
+    Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: bytes.max(64).next_multiple_of(16),
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_DST
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::INDIRECT,
+        mapped_at_creation: false,
+    }))
+}
+
+/// Index of an equal item, added if there is none.
+fn intern<T: PartialEq>(list: &mut Vec<Arc<T>>, item: &Arc<T>) -> usize {
+    list.iter().position(|known| Arc::ptr_eq(known, item) || **known == **item).unwrap_or_else(|| {
+        list.push(Arc::clone(item));
+        list.len() - 1
+    })
+}
+
+/// The distinct (curves, kind of yarn) of a scene, and which of them each object is.
+fn distinct(scene: &Scene) -> (Vec<(&Arc<Yarns>, &Arc<Yarn>)>, Vec<usize>) {
+    let mut sets: Vec<(&Arc<Yarns>, &Arc<Yarn>)> = Vec::new();
+    let mut by_address = std::collections::HashMap::<(*const Yarns, *const Yarn), usize>::new();
+    let which = scene
+        .objects
+        .iter()
+        .map(|object| {
+            *by_address.entry((Arc::as_ptr(&object.yarns), Arc::as_ptr(&object.yarn))).or_insert_with(|| {
+                sets.push((&object.yarns, &object.yarn));
+                sets.len() - 1
+            })
+        })
+        .collect();
+    (sets, which)
+}
+
+impl SceneBuffers {
+    /// Brings the GPU up to date with the scene, reusing what `previous` already holds.
+    pub fn update(
+        gpu: &Gpu,
+        previous: Option<Self>,
+        scene: &Scene,
+        cache: &mut TableCache,
+    ) -> Result<(Self, Vec<usize>), Error> {
+        let (sets, which) = distinct(scene);
+        let mut kinds = Vec::new();
+        let mut materials = Vec::new();
+        for object in &scene.objects {
+            intern(&mut kinds, &object.yarn);
+            intern(&mut materials, &object.material);
+        }
+        let known = previous.filter(|p| {
+            p.uploads.len() == sets.len()
+                && p.uploads
+                    .iter()
+                    .zip(&sets)
+                    .all(|(u, (yarns, yarn))| same_rest(&u.yarns, yarns) && *u.yarn == ***yarn)
+        });
+        let mut buffers = match known {
+            Some(mut buffers) => {
+                buffers.uploaded_bytes = 0;
+                buffers.move_knots(gpu, &sets);
+                buffers
+            }
+            None => Self::upload(gpu, &sets)?,
+        };
+        if buffers.kinds != kinds || buffers.materials != materials {
+            let mut tables = TableBuffer::default();
+            kinds.iter().for_each(|yarn| tables.add_yarn(yarn, &cache.get(yarn)));
+            materials.iter().for_each(|material| tables.add_material(material));
+            buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
+            buffers.material_data = storage(gpu, "materials", &tables.materials)?;
+            buffers.tables = storage(gpu, "tables of yarns and materials", &tables.floats)?;
+            (buffers.kinds, buffers.materials) = (kinds, materials);
+        }
+        Ok((buffers, which))
+    }
+
+    fn upload(gpu: &Gpu, sets: &[(&Arc<Yarns>, &Arc<Yarn>)]) -> Result<Self, Error> {
+        let mut first_knot = 0_u32;
+        let (mut radii, mut curves) = (Vec::new(), Vec::new());
+        let (mut positions, mut frames) = (Vec::new(), Vec::new());
+        let mut uploads = Vec::with_capacity(sets.len());
+        for (yarns, yarn) in sets {
+            let mut knots = RestKnots::new(yarns.strands(), yarn);
+            let first_curve = curves.len() as u32;
+            curves.append(&mut knots.curves);
+            radii.extend(knots.radii.drain(..).map(|[radius, curve]| [radius, curve + first_curve]));
+            let mut moving = knots.moving(yarns.strands());
+            positions.append(&mut moving.positions);
+            frames.append(&mut moving.frames);
+            let length = knots.len() as u32;
+            uploads.push(Upload {
+                yarns: Arc::clone(yarns),
+                yarn: Arc::clone(yarn),
+                knots,
+                first_knot,
+                center: moving.center,
+                bounds: moving.bounds,
+            });
+            first_knot += length;
+        }
+        let buffers = Self {
+            uploads,
+            kinds: Vec::new(),
+            materials: Vec::new(),
+            positions: storage(gpu, "control points (positions)", &positions)?,
+            frames: storage(gpu, "control points (frames)", &frames)?,
+            radii: storage(gpu, "control points (radii)", &radii)?,
+            curves: storage(gpu, "curves", &curves)?,
+            yarns: empty_storage(gpu, "yarn kinds", 0)?,
+            material_data: empty_storage(gpu, "materials", 0)?,
+            tables: empty_storage(gpu, "tables", 0)?,
+            uploaded_bytes: 0,
+        };
+        let uploaded_bytes = buffers.knot_bytes();
+        Ok(Self { uploaded_bytes, ..buffers })
+    }
+
+    /// The next frame of known yarns: positions and frames, and only of those that moved.
+    fn move_knots(&mut self, gpu: &Gpu, sets: &[(&Arc<Yarns>, &Arc<Yarn>)]) {
+        for (upload, (yarns, _)) in self.uploads.iter_mut().zip(sets) {
+            let moved = !Arc::ptr_eq(&upload.yarns, yarns) && !std::ptr::eq(upload.yarns.points(), yarns.points());
+            upload.yarns = Arc::clone(yarns);
+            if moved {
+                let moving = upload.knots.moving(yarns.strands());
+                let first = u64::from(upload.first_knot);
+                gpu.queue.write_buffer(&self.positions, 12 * first, bytemuck::cast_slice(&moving.positions));
+                gpu.queue.write_buffer(&self.frames, 8 * first, bytemuck::cast_slice(&moving.frames));
+                self.uploaded_bytes += 20 * upload.knots.len() as u64;
+                (upload.center, upload.bounds) = (moving.center, moving.bounds);
+            }
+        }
+    }
+
+    pub fn knot_bytes(&self) -> u64 {
+        self.positions.size() + self.frames.size() + self.radii.size() + self.curves.size()
+    }
+
+    pub fn table_bytes(&self) -> u64 {
+        self.yarns.size() + self.material_data.size() + self.tables.size()
+    }
+
+    /// The scene's objects as draws of these buffers; `which` is what [`Self::update`] gave.
+    pub fn draws(&self, scene: &Scene, which: &[usize], origin: DVec3) -> Result<Draws, Error> {
+        let mut draws = Draws { items: Vec::new(), segment_count: 0, bounds: Bounds::EMPTY, most_slots: 1 };
+        for (object, upload) in scene.objects.iter().zip(which.iter().map(|w| &self.uploads[*w])) {
+            let render_from_object =
+                DMat4::from_translation(-origin) * object.world_from_object * DMat4::from_translation(upload.center);
+            let determinant = render_from_object.determinant();
+            if !render_from_object.is_finite() || determinant == 0.0 {
+                return Err(invalid_transform(object));
+            }
+            let scale = determinant.abs().cbrt();
+            let row = |i: usize| -> Vec4 { render_from_object.row(i).as_vec4() };
+            let count = upload.knots.len() as u32;
+            let radius_max = upload.knots.radius_max * scale;
+            draws.items.push(layout::Draw {
+                render_from_object_x: row(0),
+                render_from_object_y: row(1),
+                render_from_object_z: row(2),
+                first_segment: draws.segment_count,
+                first_knot: upload.first_knot,
+                knot_count: count,
+                yarn: position(&self.kinds, &object.yarn),
+                material: position(&self.materials, &object.material),
+                object_id: object.id,
+                seed: hash_combine(0x00b1_ec70, object.id),
+                radius_max: radius_max as f32,
+                handedness: determinant.signum() as f32,
+                ..Default::default()
+            });
+            draws.segment_count = draws.segment_count.checked_add(count).ok_or_else(|| {
+                Error::input("scene", "more than 4.29 billion control points, instances counted each")
+            })?;
+            let reach = radius_max * bound(&object.yarn);
+            draws.bounds.merge(&upload.bounds.transformed(&render_from_object).grown(reach));
+            draws.most_slots = draws.most_slots.max(object.yarn.plies * (object.yarn.fibers_per_ply + 1));
+        }
+        Ok(draws)
+    }
+}
+
+fn position<T: PartialEq>(list: &[Arc<T>], item: &Arc<T>) -> u32 {
+    let found = list.iter().position(|known| Arc::ptr_eq(known, item) || **known == **item);
+    found.expect("every object's yarn and material was interned") as u32
+}
+
+fn invalid_transform(object: &Object) -> Error {
+    Error::input(
+        format!("object \"{}\"", object.name),
+        "its transform is not finite, or has a scale of zero along an axis",
+    )
+}

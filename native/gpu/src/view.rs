@@ -1,0 +1,121 @@
+//! From a scene's camera and lights to projections in render space: the world's axes, the camera at the origin.
+
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec4, Vec4Swizzles};
+
+use crate::{Camera, Error};
+
+/// Axis-aligned box in render space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    pub min: DVec3,
+    pub max: DVec3,
+}
+
+impl Bounds {
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    pub fn is_empty(&self) -> bool {
+        self.min.cmpgt(self.max).any()
+    }
+
+    pub fn include(&mut self, point: DVec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    pub fn merge(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+    }
+
+    pub fn grown(&self, by: f64) -> Self {
+        Self { min: self.min - by, max: self.max + by }
+    }
+
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| DVec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), self.max, self.min))
+    }
+
+    /// Of the box's image under a transform.
+    pub fn transformed(&self, matrix: &DMat4) -> Self {
+        let mut image = Self::EMPTY;
+        if !self.is_empty() {
+            self.corners().into_iter().for_each(|c| image.include(matrix.transform_point3(c)));
+        }
+        image
+    }
+}
+
+/// The camera in render space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// World position of the render space's origin.
+    pub origin: DVec3,
+    pub orthographic: bool,
+    /// Rows x, y, w, z of pixel space for the whole frame, before region and jitter.
+    rows: [DVec4; 4],
+    pub pixels_per_unit: f64,
+    /// Distance of the near plane; −∞ if everything in an orthographic view counts.
+    pub near: f64,
+    pub far: f64,
+    /// Direction towards the viewer and 1 (orthographic), or the origin and 0.
+    pub viewer: Vec4,
+}
+
+impl View {
+    pub fn new(camera: &Camera, size: [u32; 2]) -> Result<Self, Error> {
+        let invalid = |reason: &str| Error::input("camera", reason);
+        if !camera.world_from_camera.is_finite() || !camera.clip_from_camera.is_finite() {
+            return Err(invalid("a matrix has an entry that is not finite"));
+        }
+        if camera.world_from_camera.determinant().abs() < 1e-30 {
+            return Err(invalid("world_from_camera has no inverse"));
+        }
+        let origin = camera.world_from_camera.w_axis.xyz();
+        let mut camera_from_world = camera.world_from_camera;
+        camera_from_world.w_axis = DVec4::W;
+        let camera_from_render = camera_from_world.inverse();
+        let clip = camera.clip_from_camera.transpose();
+        let orthographic = clip.w_axis.xyz() == DVec3::ZERO;
+        let [cx, cy, cw] = [clip.x_axis, clip.y_axis, clip.w_axis].map(|row| camera_from_render.transpose() * row);
+        let z = -camera_from_render.transpose().z_axis;
+        let (width, height) = (f64::from(size[0]), f64::from(size[1]));
+        let projection = camera.clip_from_camera;
+        let scale = (projection.x_axis.x * width / 2.0 * projection.y_axis.y * height / 2.0).abs().sqrt();
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(invalid("clip_from_camera is no perspective or orthographic projection"));
+        }
+        // z of clip space is A z_camera + B; the planes are where clip z = ∓ clip w.
+        let (a, b) = (projection.z_axis.z, projection.w_axis.z);
+        let (near, far) = if orthographic { ((b + 1.0) / a, (b - 1.0) / a) } else { (b / (a - 1.0), b / (a + 1.0)) };
+        if !near.is_finite() || (!orthographic && near <= 0.0) {
+            return Err(invalid("clip_from_camera has no near plane in front of the camera"));
+        }
+        let toward = camera_from_render.inverse().transform_vector3(DVec3::Z).normalize();
+        Ok(Self {
+            origin,
+            orthographic,
+            rows: [(cx + cw) * (width / 2.0), (cw - cy) * (height / 2.0), cw, z],
+            pixels_per_unit: scale,
+            near,
+            far: if far.is_finite() && far > near { far } else { f64::INFINITY },
+            viewer: if orthographic { toward.as_vec3().extend(1.0) } else { Vec4::ZERO },
+        })
+    }
+
+    /// Pixel space of a region that begins at `corner`, shifted so that the sample `jitter` off a pixel's centre lands on it.
+    pub fn pixel_from_render(&self, corner: [u32; 2], jitter: [f64; 2]) -> Mat4 {
+        let [x, y, w, z] = self.rows;
+        let x = x - w * (f64::from(corner[0]) + jitter[0]);
+        let y = y - w * (f64::from(corner[1]) + jitter[1]);
+        DMat4::from_cols(x, y, w, z).transpose().as_mat4()
+    }
+
+    /// Nearest and farthest distance along the view axis within a box, cut at the near plane.
+    pub fn depth_range(&self, bounds: &Bounds) -> (f64, f64) {
+        let depths = bounds.corners().map(|c| self.rows[3].dot(c.extend(1.0)));
+        let near = depths.into_iter().fold(f64::INFINITY, f64::min).max(self.near);
+        let far = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(self.far);
+        (near, far.max(near + 1e-6 * near.abs().max(1e-6)))
+    }
+}

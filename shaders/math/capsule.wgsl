@@ -1,0 +1,86 @@
+// Coverage of pixel centres by a round-ended line.
+
+struct LineEnd {
+    // Pixels, and distance along the view axis.
+    position: vec2f,
+    depth: f32,
+    radius: f32,
+}
+
+struct Line {
+    a: LineEnd,
+    b: LineEnd,
+    direction: vec2f,
+    length_squared: f32,
+}
+
+// Where a pixel centre lies relative to a line.
+struct LineHit {
+    covered: bool,
+    // Share of the way from a to b, and signed distance over radius (positive to the left of a → b with y down).
+    t: f32,
+    offset: f32,
+    radius: f32,
+}
+
+fn make_line(a: LineEnd, b: LineEnd) -> Line {
+    let direction = b.position - a.position;
+    return Line(a, b, direction, max(dot(direction, direction), 1e-20));
+}
+
+fn line_hit(line: Line, pixel: vec2f) -> LineHit {
+    let from_a = pixel - line.a.position;
+    let t = clamp(dot(from_a, line.direction) / line.length_squared, 0.0, 1.0);
+    let radius = mix(line.a.radius, line.b.radius, t);
+    let distance = length(from_a - t * line.direction);
+    let side = sign(from_a.x * line.direction.y - from_a.y * line.direction.x);
+    return LineHit(distance <= radius && radius > 0.0, t, side * distance / max(radius, 1e-20), radius);
+}
+
+// Depth along the line; 1 / depth is linear on the screen under perspective.
+fn line_depth(line: Line, t: f32, orthographic: bool) -> f32 {
+    if orthographic {
+        return mix(line.a.depth, line.b.depth, t);
+    }
+    return 1.0 / mix(1.0 / line.a.depth, 1.0 / line.b.depth, t);
+}
+
+// Pixels to visit: columns along x if the line is flat, else rows along y, as a range and one about its centre in each.
+struct LineWalk {
+    flat: bool,
+    first: i32,
+    last: i32,
+    slope: f32,
+    reach: f32,
+    most: f32,
+}
+
+fn line_walk(line: Line, size: vec2f) -> LineWalk {
+    var w: LineWalk;
+    w.flat = abs(line.direction.x) >= abs(line.direction.y);
+    let radius = max(line.a.radius, line.b.radius);
+    let a = select(line.a.position.y, line.a.position.x, w.flat);
+    let b = select(line.b.position.y, line.b.position.x, w.flat);
+    let major = select(line.direction.y, line.direction.x, w.flat);
+    let minor = select(line.direction.x, line.direction.y, w.flat);
+    let most = select(size.y, size.x, w.flat);
+    w.most = select(size.x, size.y, w.flat);
+    w.first = i32(ceil(clamp(min(a, b) - radius - 0.5, -1.0, most)));
+    w.last = i32(floor(clamp(max(a, b) + radius - 0.5, -1.0, most - 1.0)));
+    w.first = max(w.first, 0);
+    w.slope = select(minor / major, 0.0, abs(major) < 1e-12);
+    w.reach = radius * sqrt(1.0 + w.slope * w.slope);
+    return w;
+}
+
+// First and last pixel across, at the column or row `i`.
+fn line_span(line: Line, w: LineWalk, i: i32) -> vec2i {
+    let a = select(line.a.position.yx, line.a.position, w.flat);
+    let b = select(line.b.position.yx, line.b.position, w.flat);
+    let at = clamp(f32(i) + 0.5, min(a.x, b.x), max(a.x, b.x));
+    let center = a.y + (at - a.x) * w.slope;
+    return vec2i(
+        max(i32(ceil(clamp(center - w.reach - 0.5, -1.0, w.most))), 0),
+        i32(floor(clamp(center + w.reach - 0.5, -1.0, w.most - 1.0))),
+    );
+}

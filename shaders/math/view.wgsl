@@ -1,0 +1,9 @@
+fn direction_to_viewer(viewer: vec4f, position: vec3f) -> vec3f {
+    return select(normalize(viewer.xyz - position), viewer.xyz, viewer.w > 0.5);
+}
+
+// Pixel coordinates, w, and distance along the view axis.
+fn to_pixel(pixel_from_render: mat4x4f, position: vec3f) -> vec4f {
+    let p = pixel_from_render * vec4f(position, 1.0);
+    return vec4f(p.xy / p.z, p.z, p.w);
+}

@@ -1,0 +1,66 @@
+// How it works: one thread a segment. A segment outside of the view gets no work; otherwise as many items as fibers that
+// its level of detail asks for. A scan over blocks (scan.wgsl) turns the counts into positions, so that the order of work,
+// and with it everything that follows, depends on geometry alone.
+
+var<workgroup> sums: array<u32, BLOCK>;
+
+// Whether the sphere hull of a segment's Bézier points lies outside of one border of the region.
+fn outside(plane: vec4f, hull: array<vec3f, 4>, radius: f32) -> bool {
+    let margin = -radius * length(plane.xyz);
+    for (var i = 0u; i < 4u; i++) {
+        if dot(plane, vec4f(hull[i], 1.0)) >= margin {
+            return false;
+        }
+    }
+    return true;
+}
+
+fn work_of(segment: u32) -> u32 {
+    let draw = find_draw(segment);
+    let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
+    if (knot_radii[knot].x & KNOT_BEGINS_SEGMENT) == 0u {
+        return 0u;
+    }
+    let p0 = knot_position(draw, knot - 1u);
+    let p1 = knot_position(draw, knot);
+    let p2 = knot_position(draw, knot + 1u);
+    let p3 = knot_position(draw, knot + 2u);
+    let hull = array<vec3f, 4>(p1, p1 + (p2 - p0) / 6.0, p2 - (p3 - p1) / 6.0, p2);
+    let yarn = yarns[draws[draw].yarn];
+    let radius = yarn.bound * max(knot_radius(draw, knot), knot_radius(draw, knot + 1u)) + 1.0 / frame.pixels_per_unit;
+    let rows = transpose(frame.pixel_from_render);
+    let size = vec2f(frame.size);
+    if outside(rows[0], hull, radius) || outside(rows[2] * size.x - rows[0], hull, radius)
+        || outside(rows[1], hull, radius) || outside(rows[2] * size.y - rows[1], hull, radius)
+        || outside(rows[3] - vec4f(0.0, 0.0, 0.0, frame.near), hull, radius) {
+        return 0u;
+    }
+    let ends = detail_ends(yarn, draw, segment);
+    return yarn.plies * max(1u, max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1])));
+}
+
+@compute @workgroup_size(256)
+fn cull(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    let segment = folded_index(workgroup, local, BLOCK);
+    var work = 0u;
+    if segment < frame.segment_count {
+        work = work_of(segment);
+    }
+    sums[local] = work;
+    for (var reach = 1u; reach < BLOCK; reach *= 2u) {
+        workgroupBarrier();
+        var add = 0u;
+        if local >= reach {
+            add = sums[local - reach];
+        }
+        workgroupBarrier();
+        sums[local] += add;
+    }
+    workgroupBarrier();
+    if segment < frame.segment_count {
+        segment_work[segment] = sums[local];
+    }
+    if local == BLOCK - 1u && workgroup.y * ROW + workgroup.x < arrayLength(&block_work) {
+        block_work[workgroup.y * ROW + workgroup.x] = sums[local];
+    }
+}

@@ -1,0 +1,41 @@
+// One step of a fiber as a line on the screen: shared by the visibility pass, which draws it, and the resolve, which finds
+// the pixel on it again.
+
+// How many steps a fiber of a segment takes.
+fn fiber_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
+    let per_length = s.radius.x;
+    let bend = length(0.5 * s.position.c + 1.5 * s.position.d) + length(0.5 * s.position.c);
+    let bend_pixels = 2.0 * bend * radius_pixels / max(per_length, 1e-30);
+    let length_share_here = dot(s.length, vec4f(0.0, 1.0, 1.0, 1.0));
+    let turning = TAU * length_share_here * (abs(yarn.ply_sign * s.turns.x + yarn.fiber_sign * s.turns.y) + s.turns.x);
+    return step_count(bend_pixels, turning, 0.7, radius_pixels, (1u << frame.step_bits) - 1u);
+}
+
+fn core_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
+    return fiber_steps(yarn, s, radius_pixels);
+}
+
+// Largest radius of a segment's ends on the screen.
+fn segment_radius_pixels(s: Segment) -> f32 {
+    let end = s.position.a + s.position.b + s.position.c + s.position.d;
+    let w0 = (frame.pixel_from_render * vec4f(s.position.a, 1.0)).z;
+    let w1 = (frame.pixel_from_render * vec4f(end, 1.0)).z;
+    let r0 = radius_in_pixels(s.radius.x, max(w0, frame.least_w));
+    let r1 = radius_in_pixels(dot(s.radius, vec4f(1.0)), max(w1, frame.least_w));
+    return max(r0, r1);
+}
+
+struct FiberEnd {
+    line: LineEnd,
+    fiber: FiberPoint,
+    visible: bool,
+}
+
+fn fiber_end(yarn: Yarn, s: Segment, ends: array<Detail, 2>, ply: u32, fiber: Fiber, t: f32) -> FiberEnd {
+    let p = yarn_point(s, t);
+    let f = fiber_point(yarn, s, p, ply, fiber);
+    let width = width_factor(yarn, mix_detail(ends, t), fiber.index, f);
+    let pixel = to_pixel(frame.pixel_from_render, f.position);
+    let radius = radius_in_pixels(yarn.fiber_radius * p.radius * width, pixel.z);
+    return FiberEnd(LineEnd(pixel.xy, pixel.w, radius), f, pixel.w > frame.near);
+}

@@ -1,0 +1,148 @@
+// Tables and shadow maps as the resolve reads them.
+@group(0) @binding(7) var<storage, read> materials: array<Material>;
+@group(0) @binding(9) var<storage, read> lights: array<Light>;
+@group(0) @binding(10) var<storage, read> shadow_views: array<ShadowView>;
+@group(0) @binding(11) var<storage, read> shadow_depths: array<u32>;
+
+// One of a material's tables over |theta|.
+fn material_table(material: Material, table: u32, sin_theta: f32) -> f32 {
+    let place = asin(min(abs(sin_theta), 1.0)) / (0.5 * PI) * f32(material.table_size - 1u);
+    let index = min(u32(place), material.table_size - 2u);
+    let first = material.table + table * material.table_size + index;
+    return mix(tables[first], tables[first + 1u], place - f32(index));
+}
+
+fn normalizers_at(material: Material, sin_theta_i: f32) -> Normalizers {
+    let roots = vec2f(material_table(material, 0u, sin_theta_i), material_table(material, 1u, sin_theta_i));
+    let integrals = max(roots * roots, vec2f(1e-12));
+    return Normalizers(integrals.x, integrals.y);
+}
+
+fn ambient_factors(material: Material, sin_theta_o: f32) -> vec3f {
+    return vec3f(
+        material_table(material, 2u, sin_theta_o),
+        material_table(material, 3u, sin_theta_o),
+        material_table(material, 4u, sin_theta_o),
+    );
+}
+
+// Bilinear value of a square table whose texel centres cover [-extent, extent]; 0 outside.
+fn square_table(first: u32, size: u32, extent: f32, at: vec2f) -> f32 {
+    let place = (at / extent * 0.5 + 0.5) * f32(size) - 0.5;
+    let corner = floor(place);
+    let share = place - corner;
+    var sum = 0.0;
+    for (var y = 0; y < 2; y++) {
+        for (var x = 0; x < 2; x++) {
+            let texel = vec2i(corner) + vec2i(x, y);
+            if all(texel >= vec2i(0)) && all(texel < vec2i(i32(size))) {
+                let weight = select(1.0 - share.x, share.x, x == 1) * select(1.0 - share.y, share.y, y == 1);
+                sum += weight * tables[first + u32(texel.y) * size + u32(texel.x)];
+            }
+        }
+    }
+    return sum;
+}
+
+// Share of a light that the yarn's own fibers let through to a point [WuYuksel2018 §4.1].
+fn self_shadow(yarn: Yarn, section: SectionPoint, direction: vec3f) -> f32 {
+    let in_section = vec2f(dot(direction, section.x), dot(direction, section.y));
+    let size = length(in_section);
+    if size < 1e-4 {
+        return 1.0;
+    }
+    // The table's light shines along its x axis.
+    let l = in_section / size;
+    let q = section.position;
+    let turned = vec2f(dot(q, l), l.x * q.y - l.y * q.x);
+    // Fibers all around a point that lies beyond the table towards the dark side still shade it.
+    let at = vec2f(max(turned.x, -yarn.shadow_extent * 0.98), turned.y);
+    let place = fract(atan2(l.y, l.x) / TAU * f32(yarn.plies)) * f32(yarn.shadow_slices);
+    let slice = u32(place) % yarn.shadow_slices;
+    let next = (slice + 1u) % yarn.shadow_slices;
+    let texels = yarn.shadow_size * yarn.shadow_size;
+    let depth = mix(
+        square_table(yarn.shadow_table + slice * texels, yarn.shadow_size, yarn.shadow_extent, at),
+        square_table(yarn.shadow_table + next * texels, yarn.shadow_size, yarn.shadow_extent, at),
+        place - floor(place),
+    );
+    return exp(-depth);
+}
+
+// Share of the sky that the yarn's own fibers leave open at a point [WuYuksel2018 §4.2].
+fn self_occlusion(yarn: Yarn, section: SectionPoint) -> f32 {
+    if frame.occlusion_table == 1u {
+        if any(abs(section.position) >= vec2f(yarn.occlusion_extent)) {
+            return 1.0;
+        }
+        return square_table(yarn.occlusion_table, yarn.occlusion_size, yarn.occlusion_extent, section.position);
+    }
+    let r = min(length(section.position), 1.0);
+    let k = yarn.occlusion_cubic;
+    return clamp(k.x + (k.y + (k.z + k.w * r) * r) * r, 0.0, 1.0);
+}
+
+// Side of the shadow filter, texels: two more than the taps weighted in full.
+const FILTER: i32 = 4;
+
+// Share of a light that other yarns let through, filtered over the shadow map's texels.
+fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> f32 {
+    let view = shadow_views[view_index];
+    let texel = to_pixel(view.texel_from_render, position);
+    let nearness = 1.0 - (texel.w - bias - view.depth_min) * view.depth_scale;
+    let corner = floor(texel.xy - 0.5);
+    let share = texel.xy - 0.5 - corner;
+    let first = vec2i(corner) - (FILTER / 2 - 1);
+    let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
+    var lit = 0.0;
+    for (var y = 0; y < FILTER; y++) {
+        for (var x = 0; x < FILTER; x++) {
+            let at = first + vec2i(x, y);
+            var open = 1.0;
+            if all(at >= vec2i(0)) && all(at < vec2i(i32(frame.shadow_resolution))) {
+                let depth = bitcast<f32>(shadow_depths[base + u32(at.y) * frame.shadow_resolution + u32(at.x)]);
+                open = select(1.0, 0.0, depth > nearness);
+            }
+            let weight_x = select(select(1.0, share.x, x == FILTER - 1), 1.0 - share.x, x == 0);
+            let weight_y = select(select(1.0, share.y, y == FILTER - 1), 1.0 - share.y, y == 0);
+            lit += open * weight_x * weight_y;
+        }
+    }
+    return lit / f32((FILTER - 1) * (FILTER - 1));
+}
+
+// Which face of a cube map looks along a direction: +x, -x, +y, -y, +z, -z.
+fn cube_face(direction: vec3f) -> u32 {
+    let a = abs(direction);
+    if a.x >= a.y && a.x >= a.z {
+        return select(1u, 0u, direction.x > 0.0);
+    }
+    if a.y >= a.z {
+        return select(3u, 2u, direction.y > 0.0);
+    }
+    return select(5u, 4u, direction.z > 0.0);
+}
+
+// A yarn's own tube must not shade it: its fibers do that in self_shadow. The point is moved out of the tube first.
+const SHADOW_BIAS: f32 = 0.5;
+
+fn light_shadow(light: Light, incident: Incident, p: YarnPoint, position: vec3f) -> f32 {
+    if light.shadow_view_count == 0u {
+        return 1.0;
+    }
+    let way_out = distance_out_of_tube(position - p.position, p.tangent, incident.direction, p.radius);
+    let outside = position + incident.direction * way_out;
+    var view = light.shadow_view;
+    if light.shadow_view_count == 6u {
+        view += cube_face(outside - light.position);
+    }
+    return shadow_map(view, outside, SHADOW_BIAS * p.radius);
+}
+
+fn sky_shadow(p: YarnPoint, position: vec3f) -> f32 {
+    if frame.sky_shadow_view == NO_VIEW {
+        return 1.0;
+    }
+    let way_out = distance_out_of_tube(position - p.position, p.tangent, frame.sky_direction, p.radius);
+    return shadow_map(frame.sky_shadow_view, position + frame.sky_direction * way_out, SHADOW_BIAS * p.radius);
+}

@@ -1,0 +1,69 @@
+// How it works: yarns as thick tubes [WuYuksel2018 §4.1], rasterised like fibers into depth maps, one row of the dispatch
+// for each view. Larger is nearer to the light; 0 is empty.
+
+@group(0) @binding(10) var<storage, read> shadow_views: array<ShadowView>;
+@group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
+
+struct ShadowPass {
+    first_view: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+@group(0) @binding(16) var<uniform> shadow_pass: ShadowPass;
+
+@compute @workgroup_size(64)
+fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    let segment = folded_index(workgroup, local, LANES);
+    if segment >= frame.segment_count {
+        return;
+    }
+    let view_index = shadow_pass.first_view + workgroup.z;
+    let view = shadow_views[view_index];
+    let draw = find_draw(segment);
+    let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
+    if (knot_radii[knot].x & KNOT_BEGINS_SEGMENT) == 0u {
+        return;
+    }
+    let s = segment_at(draw, segment);
+    let size = f32(frame.shadow_resolution);
+    let orthographic = abs(view.texel_from_render[0].z) + abs(view.texel_from_render[1].z) + abs(view.texel_from_render[2].z) == 0.0;
+    let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
+    let bend = length(s.position.c) + 3.0 * length(s.position.d);
+    let start = to_pixel(view.texel_from_render, s.position.a);
+    let bend_texels = 0.25 * bend * view.texels_per_unit / max(start.z, view.near);
+    let steps = clamp(u32(ceil(sqrt(bend_texels))), 1u, 32u);
+    var previous = start;
+    var previous_radius = s.radius.x;
+    for (var step = 1u; step <= steps; step++) {
+        let t = f32(step) / f32(steps);
+        let next = to_pixel(view.texel_from_render, cubic_value(s.position, t));
+        let next_radius = scalar_value(s.radius, t);
+        if min(previous.w, next.w) > view.near {
+            let line = make_line(
+                LineEnd(previous.xy, previous.w, previous_radius * view.texels_per_unit / previous.z),
+                LineEnd(next.xy, next.w, next_radius * view.texels_per_unit / next.z),
+            );
+            let walk = line_walk(line, vec2f(size));
+            for (var i = walk.first; i <= walk.last; i++) {
+                let span = line_span(line, walk, i);
+                for (var j = span.x; j <= span.y; j++) {
+                    let texel = select(vec2i(j, i), vec2i(i, j), walk.flat);
+                    let hit = line_hit(line, vec2f(texel) + 0.5);
+                    if hit.covered {
+                        let bulge = sqrt(max(1.0 - hit.offset * hit.offset, 0.0)) * mix(previous_radius, next_radius, hit.t);
+                        let depth = line_depth(line, hit.t, orthographic) - bulge;
+                        let nearness = clamp(1.0 - (depth - view.depth_min) * view.depth_scale, 0.0, 1.0);
+                        // Non-negative floats order like their bits.
+                        atomicMax(
+                            &shadow_depths[base + u32(texel.y) * frame.shadow_resolution + u32(texel.x)],
+                            bitcast<u32>(nearness),
+                        );
+                    }
+                }
+            }
+        }
+        previous = next;
+        previous_radius = next_radius;
+    }
+}

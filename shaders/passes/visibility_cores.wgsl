@@ -1,0 +1,61 @@
+// How it works: one thread draws the core fibers of one segment. A pixel takes the height of its texel, or nothing in a hole.
+
+fn draw_core(yarn: Yarn, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
+    let orthographic = frame.viewer.w > 0.5;
+    let line = make_line(
+        LineEnd(a.position, a.depth, a.half_width * yarn.core_half_width),
+        LineEnd(b.position, b.depth, b.half_width * yarn.core_half_width),
+    );
+    let walk = line_walk(line, vec2f(frame.size));
+    for (var i = walk.first; i <= walk.last; i++) {
+        let span = line_span(line, walk, i);
+        for (var j = span.x; j <= span.y; j++) {
+            let pixel = select(vec2i(j, i), vec2i(i, j), walk.flat);
+            let hit = core_hit(a, b, vec2f(pixel) + 0.5);
+            if !hit.covered || abs(hit.v) > yarn.core_half_width {
+                continue;
+            }
+            let detail = mix_detail(ends, mix(t0, t1, hit.t));
+            let layer = core_layer(yarn, detail.fibers, core_chance(vec2u(pixel)));
+            let height = tables[core_texel(yarn, layer, hit.turns, hit.v)];
+            if height < -1.5 {
+                continue;
+            }
+            let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
+            let depth = line_depth(line, hit.t, orthographic) - nearer;
+            store_key(u32(pixel.y) * frame.size.x + u32(pixel.x), make_key(depth, segment, slot, step));
+        }
+    }
+}
+
+@compute @workgroup_size(64)
+fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    let segment = folded_index(workgroup, local, LANES);
+    if segment >= frame.segment_count {
+        return;
+    }
+    let before = select(0u, segment_work[max(segment, 1u) - 1u], segment % BLOCK != 0u);
+    if segment_work[segment] == before {
+        return;
+    }
+    let draw = find_draw(segment);
+    let yarn = yarns[draws[draw].yarn];
+    let ends = detail_ends(yarn, draw, segment);
+    if min(ends[0].fibers, ends[1].fibers) >= 1.0 {
+        return;
+    }
+    let s = segment_at(draw, segment);
+    let steps = core_steps(yarn, s, segment_radius_pixels(s));
+    for (var ply = 0u; ply < yarn.plies; ply++) {
+        var previous = core_end(yarn, s, ply, 0.0);
+        for (var step = 1u; step <= steps; step++) {
+            let t = f32(step) / f32(steps);
+            let next = core_end(yarn, s, ply, t);
+            if min(previous.depth, next.depth) > frame.near {
+                let t0 = f32(step - 1u) / f32(steps);
+                draw_core(yarn, ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
+            }
+            previous = next;
+        }
+    }
+}

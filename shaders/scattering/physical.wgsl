@@ -1,0 +1,33 @@
+// R + TT [Khungurn2015; WuYuksel2018 Eq. 6] mixed with a Lambert term; twin of native/core/src/scattering/physical.rs,
+// where the contract and the energy tests are.
+
+struct Normalizers {
+    integral_r: f32,
+    integral_tt: f32,
+}
+
+fn schlick(cos_theta_i: f32) -> f32 {
+    let x = max(1.0 - cos_theta_i, 0.0);
+    return x * x * x * x * x;
+}
+
+fn fiber_scattering(material: Material, normalizers: Normalizers, angles: FiberAngles) -> vec3f {
+    let f = material.color_r + (1.0 - material.color_r) * schlick(angles.cos_theta_i);
+    let m_r = gaussian(angles.cone_offset, material.beta_r) / normalizers.integral_r;
+    let m_tt = gaussian(angles.cone_offset, material.beta_tt) / normalizers.integral_tt;
+    let n_tt = von_mises(angles.cos_phi, material.gamma_tt, material.azimuthal_tt);
+    return f * (AZIMUTHAL_UNIFORM * m_r) + (1.0 - f) * material.color_tt * (m_tt * n_tt);
+}
+
+// Radiance per irradiance on a plane that faces the light.
+fn physical_reflected(material: Material, normalizers: Normalizers, angles: FiberAngles, cos_normal_light: f32) -> vec3f {
+    let w = material.diffuse_weight;
+    return fiber_scattering(material, normalizers, angles) * ((1.0 - w) * angles.cos_theta_i)
+        + material.diffuse * (w / PI * max(cos_normal_light, 0.0));
+}
+
+// `factors`: reflect, reflect at grazing angles, transmit.
+fn physical_ambient(material: Material, factors: vec3f) -> vec3f {
+    let fiber = material.color_r * factors.x + (1.0 - material.color_r) * (factors.y + material.color_tt * factors.z);
+    return fiber * (1.0 - material.diffuse_weight) + material.diffuse * material.diffuse_weight;
+}

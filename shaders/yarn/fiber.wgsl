@@ -1,0 +1,156 @@
+// Plies and fibers along a yarn [WuYuksel2018 §3.1]; twin of native/core/src/yarn/fiber.rs.
+
+struct PlyPoint {
+    position: vec3f,
+    velocity: vec3f,
+    radial: vec3f,
+    tangential: vec3f,
+    radial_rate: vec3f,
+    tangential_rate: vec3f,
+}
+
+fn ply_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32) -> PlyPoint {
+    var unit = vec2f(1.0, 0.0);
+    var angle_rate = 0.0;
+    if yarn.plies > 1u {
+        unit = circle(yarn.ply_sign * (s.ply_turns + p.length * s.turns.x) + f32(ply) / f32(yarn.plies));
+        angle_rate = TAU * yarn.ply_sign * p.length_rate * s.turns.x;
+    }
+    var q: PlyPoint;
+    q.radial = p.normal * unit.x + p.binormal * unit.y;
+    q.tangential = p.binormal * unit.x - p.normal * unit.y;
+    q.radial_rate = q.tangential * angle_rate + p.normal_rate * unit.x + p.binormal_rate * unit.y;
+    q.tangential_rate = -q.radial * angle_rate - p.normal_rate * unit.y + p.binormal_rate * unit.x;
+    q.position = p.position + q.radial * (yarn.ply_distance * p.radius);
+    q.velocity = p.velocity + yarn.ply_distance * (q.radial * p.radius_rate + q.radial_rate * p.radius);
+    return q;
+}
+
+// A row of the fiber table with what the ply adds to it.
+struct Fiber {
+    index: u32,
+    radius: f32,
+    angle_turns: f32,
+    migration_turns: f32,
+    hash: u32,
+}
+
+fn make_fiber(seed: u32, ply: u32, index: u32, row: vec3f) -> Fiber {
+    let ply_hash = hash_combine(seed, ply);
+    return Fiber(
+        index,
+        row.x,
+        row.y + unit_from_hash(hash_combine(ply_hash, 0x0ffffff2u)),
+        row.z + unit_from_hash(hash_combine(ply_hash, 0x0ffffff1u)),
+        hash_combine(ply_hash, index),
+    );
+}
+
+// The parts of a hair's period: a line never joins the tip to what lies beyond it.
+const PIECE_PLY: u32 = 0u;
+const PIECE_HAIR: u32 = 1u;
+const PIECE_BEYOND: u32 = 2u;
+
+struct Profile {
+    radius: f32,
+    radius_rate: f32,
+    angle_turns: f32,
+    angle_rate: f32,
+    // 1 for a loop or a hair.
+    flyaway: f32,
+    // Factor on the width: a hair thins out at its tip, and so does the end left in the ply.
+    taper: f32,
+    piece: u32,
+}
+
+fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, hash: u32) -> Profile {
+    let unit = circle(phase);
+    let wave = 0.5 - 0.5 * unit.x;
+    let wave_rate = PI * unit.y;
+    let inner = fiber.radius * yarn.r_min;
+    var outer = fiber.radius;
+    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
+    if fiber.index < yarn.flyaway_fibers {
+        let choice = unit_from_hash(hash);
+        if choice < yarn.loop_chance {
+            let draw = yarn.loop_radius_mean + yarn.loop_radius_deviation * normal_from_hash(hash_combine(hash, 1u));
+            outer = max(draw, fiber.radius);
+            profile.flyaway = 1.0;
+        } else if choice < yarn.loop_chance + yarn.hair_chance {
+            let span = yarn.width_mean + yarn.width_deviation * normal_from_hash(hash_combine(hash, 2u));
+            let width = clamp(abs(span), 0.02, 0.45);
+            let direction = select(-1.0, 1.0, span >= 0.0);
+            let along = (phase - 0.5) * direction / width;
+            if along >= 0.0 && along <= 1.0 {
+                let tip = yarn.tip_min_mean + yarn.tip_min_deviation * normal_from_hash(hash_combine(hash, 3u))
+                    + yarn.tip_span_mean + yarn.tip_span_deviation * normal_from_hash(hash_combine(hash, 4u));
+                let rise = max(tip, fiber.radius) - fiber.radius;
+                let turns = yarn.turns_mean + yarn.turns_deviation * normal_from_hash(hash_combine(hash, 5u));
+                return Profile(
+                    fiber.radius + rise * along,
+                    rise * direction / width,
+                    direction * along * turns - (phase - 0.5) / periods_per_turn,
+                    turns / width - 1.0 / periods_per_turn,
+                    1.0,
+                    1.0 - along * along * along * along,
+                    PIECE_HAIR,
+                );
+            }
+            if along > 1.0 {
+                profile.piece = PIECE_BEYOND;
+                profile.taper = smoothstep(0.0, 0.15, (along - 1.0) * width);
+            }
+        }
+    }
+    profile.radius = inner + (outer - inner) * wave;
+    profile.radius_rate = (outer - inner) * wave_rate;
+    return profile;
+}
+
+struct FiberPoint {
+    position: vec3f,
+    velocity: vec3f,
+    // Relative to the ply's half axes.
+    relative_radius: f32,
+    flyaway: f32,
+    taper: f32,
+    piece: u32,
+    period: u32,
+}
+
+fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, fiber: Fiber) -> FiberPoint {
+    let q = ply_point(yarn, s, p, ply);
+    let position_in_migration = s.phase + p.length * s.turns.z + fiber.migration_turns;
+    let whole = floor(position_in_migration);
+    var period = s.period + u32(whole);
+    if s.closed_periods > 0u {
+        period %= s.closed_periods;
+    }
+    let periods_per_turn = s.turns.z / s.turns.y;
+    let shape = fiber_profile(yarn, periods_per_turn, fiber, position_in_migration - whole, hash_combine(fiber.hash, period));
+    let phase_rate = p.length_rate * s.turns.z;
+
+    let unit = circle(
+        yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y + shape.angle_turns) + fiber.angle_turns,
+    );
+    let angle_rate = TAU * yarn.fiber_sign * (p.length_rate * s.turns.y + shape.angle_rate * phase_rate);
+    let spoke = q.radial * (unit.x * yarn.ellipse_short) + q.tangential * (unit.y * yarn.ellipse_long);
+    let spoke_rate = q.radial_rate * (unit.x * yarn.ellipse_short) + q.tangential_rate * (unit.y * yarn.ellipse_long)
+        + (q.tangential * (unit.x * yarn.ellipse_long) - q.radial * (unit.y * yarn.ellipse_short)) * angle_rate;
+    var f: FiberPoint;
+    f.position = q.position + spoke * (shape.radius * p.radius);
+    f.velocity = q.velocity + spoke_rate * (shape.radius * p.radius)
+        + spoke * (shape.radius * p.radius_rate + shape.radius_rate * phase_rate * p.radius);
+    f.relative_radius = shape.radius;
+    f.flyaway = shape.flyaway;
+    f.taper = shape.taper;
+    f.piece = shape.piece;
+    f.period = period;
+    return f;
+}
+
+// Whether a line may join two points of a fiber: not across a hair's tip.
+fn joined(a: FiberPoint, b: FiberPoint) -> bool {
+    let across_tip = (a.piece == PIECE_BEYOND) != (b.piece == PIECE_BEYOND);
+    return !(across_tip && a.period == b.period);
+}
