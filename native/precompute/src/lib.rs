@@ -1,1 +1,19 @@
-//! Lisle: precompute.
+//! Tables that depend on a yarn's parameters alone: self-shadow, ambient occlusion, core fiber.
+//!
+//! **Section coordinates.** A point q of a yarn's cross-section, in units of the yarn's outer radius, in the frame that turns with
+//! the plies: ply j's centre lies at angle 2πj/K. The section repeats after 1/K of a turn.
+
+mod core_fiber;
+mod density;
+#[cfg(test)]
+mod explicit;
+mod occlusion;
+mod profile;
+mod self_shadow;
+mod tables;
+
+pub use core_fiber::{CoreFiber, HOLE};
+pub use density::SectionDensity;
+pub use occlusion::Occlusion;
+pub use self_shadow::SelfShadow;
+pub use tables::Tables;

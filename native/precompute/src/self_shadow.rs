@@ -1,0 +1,212 @@
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat2, DVec2};
+use rayon::prelude::*;
+
+use crate::SectionDensity;
+
+/// Light directions per 1/K of a turn.
+const SLICES: usize = 16;
+/// Texels along a side of a slice.
+const SIZE: usize = 64;
+
+/// Optical depth from every point of a yarn's section towards a light [WuYuksel2018 §4.1].
+///
+/// τ(q) = ∫ n 2r dl from q to the light, with n fibers of radius r per area (and their slant, [`SectionDensity::extinction`]): the expected number of fibers that a ray meets, whose negative
+/// exponential is the mean transmittance. A light may come at any inclination to the yarn: a cylinder is met
+/// exactly if the ray's projection on the section meets its circle, so that the path in the section counts, not the
+/// longer one in space. The paper's constant of proportionality is thereby fixed.
+///
+/// The integral begins πr/4 from q. A shaded point lies on a fiber and in no other one, so that fibers which contain it (πr²/2 of
+/// their area towards the light, divided by 2r) cannot shade it.
+///
+/// Against rays through explicit, twisted fibers the mean transmittance is right within 0.008 and within 0.04 at any depth (tested; the
+/// rest of the bias is towards light: the table knows neither the slant of hairs nor that the number of fibers is fixed, not random). Lookups
+/// between slices and texels add an RMS of 0.011, and at most 0.15 where a ray grazes a ply.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SelfShadow {
+    /// Slice k has the light at angle k/slices · 2π/K in the section; slices repeat.
+    pub slices: usize,
+    /// Texels along x and along y; values are at texel centres.
+    pub size: usize,
+    /// Half side of the square a slice covers, in outer radii. Beyond it the nearest texel is right.
+    pub extent: f32,
+    /// Plies, K.
+    pub plies: u32,
+    /// τ as [slice][y][x], in the section turned so that the light is at +x.
+    pub optical_depth: Vec<f32>,
+}
+
+/// Half side of the square that slices cover, in outer radii: the plies and most loops.
+pub(crate) const EXTENT: f64 = 1.25;
+
+/// Optical depths of one slice as [y][x], light at angle `psi`.
+pub(crate) fn depth_slice(density: &SectionDensity, psi: f64, size: usize) -> Vec<f64> {
+    /// Integration steps per texel.
+    const STEPS: usize = 4;
+    let section_from_light = DMat2::from_angle(psi);
+    let texel = 2.0 * EXTENT / size as f64;
+    let step = texel / STEPS as f64;
+    let skipped = 0.25 * PI * density.fiber_radius;
+    let center = |k: usize| (k as f64 + 0.5) * texel - EXTENT;
+    let mut slice = vec![0.0; size * size];
+    for (y, row) in slice.chunks_exact_mut(size).enumerate() {
+        // Midpoint rule from beyond the section inwards, so that each texel adds to its neighbour on the light's side.
+        let mut depth = 0.0;
+        let beyond = ((density.reach - EXTENT) / step).max(0.0) as usize;
+        for k in 0..beyond {
+            let q = DVec2::new(EXTENT + (k as f64 + 0.5) * step + skipped, center(y));
+            depth += density.extinction(section_from_light * q) * step;
+        }
+        for x in (0..size).rev() {
+            for k in 0..STEPS {
+                let towards_light = (STEPS - k) as f64 - 0.5;
+                let q = DVec2::new(center(x) + towards_light * step + skipped, center(y));
+                depth += density.extinction(section_from_light * q) * step;
+            }
+            row[x] = depth;
+        }
+    }
+    slice
+}
+
+impl SelfShadow {
+    /// Integrates the density along every slice.
+    pub fn new(density: &SectionDensity) -> Self {
+        let sector = TAU / f64::from(density.plies);
+        let optical_depth = (0..SLICES)
+            .into_par_iter()
+            .flat_map_iter(|k| depth_slice(density, sector * k as f64 / SLICES as f64, SIZE))
+            .map(|depth| depth as f32)
+            .collect();
+        Self { slices: SLICES, size: SIZE, extent: EXTENT as f32, plies: density.plies, optical_depth }
+    }
+
+    /// Trilinear lookup: light at angle `psi` radians in the section, `q` in section coordinates.
+    pub fn at(&self, psi: f64, q: DVec2) -> f64 {
+        let turns = psi * f64::from(self.plies) / TAU;
+        let z = (turns - turns.floor()) * self.slices as f64;
+        let (near, z) = (z as usize % self.slices, z.fract());
+        let toward_light = DMat2::from_angle(-psi) * q;
+        let slice = |k: usize| {
+            bilinear(&self.optical_depth[k * self.size * self.size..], self.size, f64::from(self.extent), toward_light)
+        };
+        slice(near) * (1.0 - z) + slice((near + 1) % self.slices) * z
+    }
+}
+
+/// Bilinear lookup in a square table [y][x] over [−extent, extent]², clamped to its border texels.
+pub(crate) fn bilinear<T: Copy + Into<f64>>(table: &[T], size: usize, extent: f64, q: DVec2) -> f64 {
+    let texel = ((q / extent * 0.5 + 0.5) * size as f64 - 0.5).clamp(DVec2::ZERO, DVec2::splat((size - 1) as f64));
+    let (x, y) = ((texel.x as usize).min(size - 2), (texel.y as usize).min(size - 2));
+    let (fx, fy) = (texel.x - x as f64, texel.y - y as f64);
+    let at = |dx: usize, dy: usize| -> f64 { table[(y + dy) * size + x + dx].into() };
+    (at(0, 0) * (1.0 - fx) + at(1, 0) * fx) * (1.0 - fy) + (at(0, 1) * (1.0 - fx) + at(1, 1) * fx) * fy
+}
+
+#[cfg(test)]
+mod tests {
+    use lisle_core::yarn::{PRESET_NAMES, Yarn};
+
+    use super::*;
+    use crate::explicit::{Random, Sections, without_flyaways};
+
+    const BINS: usize = 5;
+
+    /// Worst difference between predicted and true mean transmittance: rays sorted by prediction into [`BINS`] bins, then of all rays.
+    fn errors(yarn: &Yarn, predict: impl Fn(f64, DVec2) -> f64) -> (f64, f64) {
+        let (dealer, mut random) = (Sections::new(yarn), Random::new(5));
+        let radius = yarn.fiber_radius / yarn.outer_radius();
+        let mut bins = [(0.0, 0.0, 0.0); BINS];
+        for _ in 0..1000 {
+            let fibers = dealer.draw(&mut random);
+            for _ in 0..40 {
+                let q = DVec2::from_angle(TAU * random.unit()) * random.unit().sqrt();
+                let psi = TAU * random.unit();
+                let light = DVec2::from_angle(psi);
+                if fibers.iter().any(|fiber| fiber.distance(q) < radius) {
+                    continue; // Inside a fiber: nothing to shade.
+                }
+                let blocked = fibers.iter().any(|fiber| fiber.blocks(q, light, radius));
+                let predicted = predict(psi, q);
+                let bin = &mut bins[((predicted * BINS as f64) as usize).min(BINS - 1)];
+                *bin = (bin.0 + predicted, bin.1 + f64::from(u8::from(!blocked)), bin.2 + 1.0);
+            }
+        }
+        let worst = bins.iter().map(|(p, t, n)| (p - t).abs() / n).fold(0.0, f64::max);
+        let sum = bins.iter().fold((0.0, 0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
+        (worst, (sum.0 - sum.1).abs() / sum.2)
+    }
+
+    /// A bin holds at least 1000 rays, in clusters of a section: three standard errors. All rays: the same.
+    const BOUNDS: (f64, f64) = (0.04, 0.008);
+
+    fn within_bounds((worst, mean): (f64, f64)) -> bool {
+        worst < BOUNDS.0 && mean < BOUNDS.1
+    }
+
+    #[test]
+    fn transmittance_is_that_of_rays_through_explicit_fibers() {
+        for name in PRESET_NAMES {
+            let full = Yarn::preset(name).expect(name);
+            for (kind, yarn) in [("bare", without_flyaways(&full)), ("with flyaways", full)] {
+                let table = SelfShadow::new(&SectionDensity::new(&yarn));
+                let error = errors(&yarn, |psi, q| (-table.at(psi, q)).exp());
+                println!("{name} {kind}: bins within {:.4}, mean within {:.4}", error.0, error.1);
+                assert!(within_bounds(error), "{name} {kind}: {error:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn wrong_optical_depths_are_rejected_by_the_same_rays() {
+        let yarn = Yarn::preset("cotton-1").expect("preset");
+        let density = SectionDensity::new(&yarn);
+        let table = SelfShadow::new(&density);
+        let skipped = 0.25 * PI * density.fiber_radius;
+        let bare = SelfShadow::new(&SectionDensity::new(&without_flyaways(&yarn)));
+        assert!(!within_bounds(errors(&yarn, |psi, q| (-0.8 * table.at(psi, q)).exp())), "too thin");
+        assert!(!within_bounds(errors(&yarn, |psi, q| (-1.25 * table.at(psi, q)).exp())), "too thick");
+        let from_q = |psi: f64, q: DVec2| (-table.at(psi, q - DVec2::from_angle(psi) * skipped)).exp();
+        assert!(!within_bounds(errors(&yarn, from_q)), "fibers around the point itself");
+        assert!(!within_bounds(errors(&yarn, |psi, q| (-table.at(-psi, q)).exp())), "mirrored light");
+        assert!(!within_bounds(errors(&yarn, |psi, q| (-bare.at(psi, q)).exp())), "without flyaways");
+    }
+
+    #[test]
+    fn lookups_stay_within_their_bound_between_slices_and_texels() {
+        for name in PRESET_NAMES {
+            let density = SectionDensity::new(&Yarn::preset(name).expect(name));
+            let table = SelfShadow::new(&density);
+            let mut random = Random::new(2);
+            let (mut worst, mut square) = (0.0_f64, 0.0);
+            const COUNT: u32 = 4000;
+            for _ in 0..COUNT {
+                let (psi, rho) = (TAU * random.unit(), random.unit().sqrt());
+                let q = DVec2::from_angle(TAU * random.unit()) * rho;
+                let light = DVec2::from_angle(psi);
+                let (skipped, step) = (0.25 * PI * density.fiber_radius, 1.0 / 256.0);
+                let steps = ((density.reach + 1.0) / step) as u32;
+                let depth: f64 = (0..steps)
+                    .map(|k| density.extinction(q + light * (skipped + (f64::from(k) + 0.5) * step)))
+                    .sum::<f64>()
+                    * step;
+                let error = ((-depth).exp() - (-table.at(psi, q)).exp()).abs();
+                worst = worst.max(error);
+                square += error * error / f64::from(COUNT);
+            }
+            println!("{name}: lookups within {worst:.4}, RMS {:.4}", square.sqrt());
+            assert!(worst < 0.15 && square.sqrt() < 0.012, "{name}: {worst} {}", square.sqrt());
+        }
+    }
+
+    #[test]
+    fn slices_repeat_with_the_plies() {
+        let table = SelfShadow::new(&SectionDensity::new(&Yarn::preset("silk-1").expect("preset")));
+        let q = DVec2::new(0.2, -0.1);
+        let turn = TAU / 3.0;
+        let turned = DMat2::from_angle(turn) * q;
+        assert!((table.at(0.4, q) - table.at(0.4 + turn, turned)).abs() < 1e-9);
+        assert!((table.at(-0.0, q) - table.at(TAU, q)).abs() < 1e-9);
+    }
+}

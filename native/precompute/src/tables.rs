@@ -1,0 +1,63 @@
+use lisle_core::yarn::{FiberTable, Yarn};
+
+use crate::{CoreFiber, Occlusion, SectionDensity, SelfShadow};
+
+/// Everything precomputed for one kind of yarn. The same yarn gives the same bits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tables {
+    /// Optical depth towards a light.
+    pub self_shadow: SelfShadow,
+    /// Visibility from all sides.
+    pub occlusion: Occlusion,
+    /// The inner fibers of a ply as a texture.
+    pub core_fiber: CoreFiber,
+}
+
+impl Tables {
+    /// Tables of a yarn whose parameters are valid ([`Yarn::validate`]).
+    pub fn new(yarn: &Yarn) -> Self {
+        let density = SectionDensity::new(yarn);
+        Self {
+            self_shadow: SelfShadow::new(&density),
+            occlusion: Occlusion::new(&density),
+            core_fiber: CoreFiber::new(yarn, &FiberTable::new(yarn)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use lisle_core::yarn::PRESET_NAMES;
+
+    use super::*;
+
+    #[test]
+    fn tables_are_deterministic() {
+        for name in PRESET_NAMES {
+            let yarn = Yarn::preset(name).expect(name);
+            let start = std::time::Instant::now();
+            let tables = Tables::new(&yarn);
+            let seconds = start.elapsed().as_secs_f64();
+            println!("{name}: {seconds:.3} s");
+            assert_eq!(tables, Tables::new(&yarn), "{name}");
+        }
+    }
+
+    #[test]
+    fn extreme_yarns_give_finite_tables() {
+        let base = Yarn::preset("silk-1").expect("preset");
+        for yarn in [
+            Yarn { plies: 1, fibers_per_ply: 1, ..base.clone() },
+            Yarn { r_min: 0.0, ..base.clone() },
+            Yarn { plies: 8, fibers_per_ply: 500, density_beta: 0.0, ..base.clone() },
+            Yarn { fiber_radius: 0.05, density_epsilon: 0.5, ..base },
+        ] {
+            yarn.validate().expect("valid");
+            let tables = Tables::new(&yarn);
+            assert!(tables.self_shadow.optical_depth.iter().all(|t| t.is_finite() && *t >= 0.0));
+            assert!(tables.occlusion.visibility.iter().all(|v| (0.0..=1.0).contains(v)));
+            assert!(tables.occlusion.cubic.iter().all(|c| c.is_finite()));
+            assert!(tables.core_fiber.texels.iter().flatten().all(|x| x.is_finite()));
+        }
+    }
+}
