@@ -19,7 +19,7 @@ const ARM_M: [[f64; 3]; 5] =
 const LEAST_POINTS: usize = 20_000;
 
 /// A sweater's body and two sleeves of stockinette, all courses closed, in metres: at most `points` control points,
-/// and nearly as many. The sweater keeps its size; more points mean thinner yarn (0.5 mm at 2 M points).
+/// and nearly as many. The sweater keeps its size; more points mean thinner yarn (0.6 mm at 2 M points).
 ///
 /// # Errors
 /// [`Error::CoarseGarment`] below 20,000 points.
