@@ -102,14 +102,14 @@ fn half_span(yarn: &Yarn, at: &Center, fiber_radius: f64) -> f64 {
 /// Draws one fiber into a row, nearest to the viewer wins.
 fn draw(yarn: &Yarn, at: &Center, fiber_radius: f64, half_width: f64, row: &mut [[f32; 4]; WIDTH]) {
     let span = half_span(yarn, at, fiber_radius);
-    let texel = 2.0 * half_width / WIDTH as f64;
-    let column = |v: f64| ((v + half_width) / texel - 0.5).clamp(0.0, WIDTH as f64);
-    for k in column(at.v - span).ceil() as usize..(column(at.v + span).floor() as usize + 1).min(WIDTH) {
-        let v = (k as f64 + 0.5) * texel - half_width;
-        let offset = (v - at.v) / span;
+    let texel_width = 2.0 * half_width / WIDTH as f64;
+    let column = |v: f64| ((v + half_width) / texel_width - 0.5).clamp(0.0, WIDTH as f64);
+    let columns = column(at.v - span).ceil() as usize..(column(at.v + span).floor() as usize + 1).min(WIDTH);
+    for (k, texel) in columns.clone().zip(&mut row[columns]) {
+        let offset = ((k as f64 + 0.5) * texel_width - half_width - at.v) / span;
         let height = (at.h + fiber_radius * (1.0 - offset * offset).max(0.0).sqrt()) as f32;
-        if offset.abs() <= 1.0 && height > row[k][0] {
-            row[k] = [height, offset as f32, at.dh as f32, at.dv as f32];
+        if offset.abs() <= 1.0 && height > texel[0] {
+            *texel = [height, offset as f32, at.dh as f32, at.dv as f32];
         }
     }
 }

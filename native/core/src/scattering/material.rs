@@ -3,6 +3,8 @@ use std::f64::consts::FRAC_PI_2;
 use glam::DVec3;
 use thiserror::Error;
 
+use super::multiple::cloth_color;
+
 /// Names of the fitted materials, as [`Material::preset`] takes them.
 pub const MATERIAL_NAMES: [&str; 13] = [
     "fleece",
@@ -87,31 +89,23 @@ const FITS: [Row; 13] = [
 /// Share of the Lambert term in the presets.
 const DIFFUSE_WEIGHT: f64 = 0.5;
 
-/// Albedo of light scattered many times among fibers whose single-scattering albedo is `albedo`: the reflectance
-/// (1 − √(1−a)) / (1 + √(1−a)) of an infinitely deep medium of isotropic scatterers in the two-stream approximation.
-fn multiple_scattering_albedo(albedo: f64) -> f64 {
-    let root = (1.0 - albedo).max(0.0).sqrt();
-    (1.0 - root) / (1.0 + root)
-}
-
 impl Material {
     /// The fitted material of that name ([`MATERIAL_NAMES`]), or `None`.
     ///
     /// The fits hold R and TT only: their colour comes from many scatterings between fibers, which a direct-light
-    /// renderer leaves out. `diffuse` stands in for those: the colour that light has after many scatterings
-    /// by the same fiber.
+    /// renderer leaves out. `diffuse` stands in for those: the colour of a cloth of such fibers.
     pub fn preset(name: &str) -> Option<Self> {
         let index = MATERIAL_NAMES.iter().position(|preset| *preset == name)?;
         let (color_r, color_tt, [beta_r, beta_tt, gamma_tt]) = FITS[index];
         let (color_r, color_tt) = (DVec3::from(color_r), DVec3::from(color_tt));
-        let albedo = color_r + (DVec3::ONE - color_r) * color_tt;
-        let diffuse = DVec3::from(albedo.to_array().map(multiple_scattering_albedo));
+        let gamma_tt_rad = gamma_tt.to_radians();
+        let diffuse = cloth_color(color_r, color_tt, gamma_tt_rad);
         Some(Self {
             color_r,
             color_tt,
             beta_r_rad: beta_r.to_radians(),
             beta_tt_rad: beta_tt.to_radians(),
-            gamma_tt_rad: gamma_tt.to_radians(),
+            gamma_tt_rad,
             diffuse,
             diffuse_weight: DIFFUSE_WEIGHT,
             specular: color_r.min(DVec3::ONE - diffuse),

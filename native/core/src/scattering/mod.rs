@@ -10,6 +10,7 @@ mod angles;
 mod azimuthal;
 mod longitudinal;
 mod material;
+mod multiple;
 mod physical;
 mod quadrature;
 mod simple;
@@ -19,6 +20,7 @@ pub use angles::FiberAngles;
 pub use azimuthal::{von_mises, von_mises_scale};
 pub use longitudinal::{gaussian, gaussian_integral};
 pub use material::{MATERIAL_NAMES, Material, MaterialError};
+pub use multiple::cloth_color;
 pub use physical::{
     AmbientFactors, Normalizers, albedo, fiber_scattering, fresnel, physical_ambient, physical_reflected,
 };
