@@ -24,7 +24,8 @@ fn all_kinds() -> Vec<(String, Curves)> {
     let mut kinds = Vec::new();
     for closed in [false, true] {
         let bezier = if closed { 12 } else { 13 };
-        for (basis, count) in [(Basis::CatmullRom, 9), (Basis::BSpline, 9), (Basis::Linear, 9), (Basis::Bezier, bezier)] {
+        for (basis, count) in [(Basis::CatmullRom, 9), (Basis::BSpline, 9), (Basis::Linear, 9), (Basis::Bezier, bezier)]
+        {
             kinds.push((format!("{basis:?} closed {closed}"), noisy(count, closed, basis, 7)));
         }
         for mode in [KnotMode::Normal, KnotMode::Endpoint, KnotMode::Bezier, KnotMode::EndpointBezier] {
@@ -99,7 +100,8 @@ fn catmull_rom_reflects_its_ends() {
 fn nurbs_reproduce_the_uniform_bases() {
     // Order 4, uniform knots: the B-spline, one control point later when closed.
     for closed in [false, true] {
-        let (spline, rational) = (noisy(9, closed, Basis::BSpline, 5), noisy(9, closed, nurbs(4, None, KnotMode::Normal), 5));
+        let (spline, rational) =
+            (noisy(9, closed, Basis::BSpline, 5), noisy(9, closed, nurbs(4, None, KnotMode::Normal), 5));
         let (a, b) = (spline.curve(0), rational.curve(0));
         assert_eq!(a.segment_count(), b.segment_count());
         for segment in 0..a.segment_count() {
@@ -208,9 +210,8 @@ fn lengths_match_brute_force() {
     // Sharp turns, near cusps and very uneven points.
     let mut noise = Noise(11);
     for _ in 0..200 {
-        let points: Vec<_> = (0..6)
-            .map(|_| (noise.vector() * (10.0 * noise.next()).exp2()).as_vec3().to_array())
-            .collect();
+        let points: Vec<_> =
+            (0..6).map(|_| (noise.vector() * (10.0 * noise.next()).exp2()).as_vec3().to_array()).collect();
         let curves = Curves::catmull_rom(vec![points], false);
         let (found, expected) = (length(&curves), brute_length(&curves));
         assert!((found / expected - 1.0).abs() < 1e-5, "{:?}: {found} is not {expected}", curves.points);

@@ -23,7 +23,11 @@ fn shapes() -> Vec<(&'static str, Vec<[f32; 3]>, f32)> {
         ("straight", straight(COUNT), 0.1),
         ("coiled", coiled(COUNT, 40.0), 0.15),
         ("knitted", knitted(COUNT, 30.0), 0.1),
-        ("nearly straight", sampled(COUNT, |i| DVec3::new(0.1 * i, 1e-3 * (0.3 * i).sin(), 1e-3 * (0.2 * i).cos())), 0.1),
+        (
+            "nearly straight",
+            sampled(COUNT, |i| DVec3::new(0.1 * i, 1e-3 * (0.3 * i).sin(), 1e-3 * (0.2 * i).cos())),
+            0.1,
+        ),
     ]
 }
 
@@ -57,7 +61,8 @@ fn a_moved_point_is_felt_by_its_neighbours_only() {
                 // A point at the yarn's radius moves by this part of the radius.
                 let change = largest_change(before.strands().normals(), after.strands().normals(), far);
                 assert!(change < 0.01, "{name}: moving point {moved} changes far normals by {change}");
-                transported_change = transported_change.max(largest_change(&transported(&pose), &transported(&changed), far));
+                transported_change =
+                    transported_change.max(largest_change(&transported(&pose), &transported(&changed), far));
             }
         }
     }
@@ -84,9 +89,11 @@ fn a_rigid_motion_carries_the_normals() {
                 })
                 .collect();
             let constant = if name.contains("straight") { angles[0] } else { 0.0 };
-            let off = angles.iter().map(|a| (a - constant).sin().abs().max(1.0 - (a - constant).cos())).fold(0.0, f64::max);
-            // f32 coordinates up to 1000 carry noise of 6e-5 into edges of 0.1.
-            assert!(off < 2e-3, "{name}: {off}");
+            let off =
+                angles.iter().map(|a| (a - constant).sin().abs().max(1.0 - (a - constant).cos())).fold(0.0, f64::max);
+            // f32 coordinates up to 1000 carry noise of 6e-5 into edges of 0.1; a straight stretch has less to hold on to.
+            let tolerance = if name.contains("straight") { 2e-3 } else { 2e-4 };
+            assert!(off < tolerance, "{name}: {off}");
         }
     }
 }
@@ -201,7 +208,6 @@ fn straight_stretches_do_not_jump_between_frames() {
     let rest = yarns(single(sampled(count, |i| DVec3::new(0.1 * i, 0.0, 0.0)), false), 0.1);
     let curl = |amount: f64| {
         let mut p = DVec3::ZERO;
-        sampled(count, |_| p).len();
         let mut points = Vec::with_capacity(count);
         for i in 0..count {
             points.push(p.as_vec3().to_array());
@@ -230,12 +236,14 @@ fn degenerate_shapes_have_frames() {
         ("repeated, closed", vec![o, o, x, x, [0.0, 1.0, 0.0], o], true),
         ("there and back", vec![o, x, o, x, o], false),
         ("there and back, closed", vec![o, x, xx, x], true),
+        ("no derivative anywhere", vec![o, x, o, x], true),
         ("three points closed", vec![o, x, [0.0, 1.0, 0.0]], true),
     ] {
         let rest = line(&points, closed);
         assert_frames(name, &rest);
         // Collapsed to a point, on a line, mirrored, and far away.
-        let shapes: [fn(&[f32; 3]) -> [f32; 3]; 4] = [
+        type Shape = fn(&[f32; 3]) -> [f32; 3];
+        let shapes: [Shape; 4] = [
             |_| [5.0, 6.0, 7.0],
             |p| [p[0] + p[1], 0.0, 0.0],
             |p| [-p[0], p[1], p[2]],

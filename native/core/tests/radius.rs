@@ -13,7 +13,8 @@ fn estimated(curves: Curves) -> f32 {
 
 #[test]
 fn yarn_models_have_about_a_tenth() {
-    for name in ["openwork_trellis_pattern", "flame_ribbing_pattern", "glove", "alien_sweater", "sweater_flame_ribbing"] {
+    for name in ["openwork_trellis_pattern", "flame_ribbing_pattern", "glove", "alien_sweater", "sweater_flame_ribbing"]
+    {
         let Some(curves) = bcc(&format!("{name}.bcc")) else { return };
         let radius = estimated(curves);
         assert!((0.085..0.11).contains(&radius), "{name}: {radius}");

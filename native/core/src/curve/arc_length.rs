@@ -5,8 +5,13 @@ use super::evaluate::Segment;
 /// Nodes in `[0, 1]` and weights of the five-point rule.
 const NODES: [f64; 5] =
     [0.046_910_077_030_668_0, 0.230_765_344_947_158_5, 0.5, 0.769_234_655_052_841_5, 0.953_089_922_969_332];
-const WEIGHTS: [f64; 5] =
-    [0.118_463_442_528_094_5, 0.239_314_335_249_683_2, 0.284_444_444_444_444_4, 0.239_314_335_249_683_2, 0.118_463_442_528_094_5];
+const WEIGHTS: [f64; 5] = [
+    0.118_463_442_528_094_5,
+    0.239_314_335_249_683_2,
+    0.284_444_444_444_444_4,
+    0.239_314_335_249_683_2,
+    0.118_463_442_528_094_5,
+];
 
 /// An interval is halved until the rule on it and the rule on its halves agree to this relative difference. The
 /// halves' own error is far smaller, save at a cusp, where it shrinks fourfold per halving.

@@ -36,12 +36,7 @@ impl CubicBasis {
 }
 
 pub(super) static CATMULL_ROM: CubicBasis = CubicBasis {
-    coefficients: [
-        [0.0, 1.0, 0.0, 0.0],
-        [-0.5, 0.0, 0.5, 0.0],
-        [1.0, -2.5, 2.0, -0.5],
-        [-0.5, 1.5, -1.5, 0.5],
-    ],
+    coefficients: [[0.0, 1.0, 0.0, 0.0], [-0.5, 0.0, 0.5, 0.0], [1.0, -2.5, 2.0, -0.5], [-0.5, 1.5, -1.5, 0.5]],
     stride: 1,
     first: [-1, -1],
 };
@@ -59,12 +54,7 @@ pub(super) static B_SPLINE: CubicBasis = CubicBasis {
 };
 
 pub(super) static BEZIER: CubicBasis = CubicBasis {
-    coefficients: [
-        [1.0, 0.0, 0.0, 0.0],
-        [-3.0, 3.0, 0.0, 0.0],
-        [3.0, -6.0, 3.0, 0.0],
-        [-1.0, 3.0, -3.0, 1.0],
-    ],
+    coefficients: [[1.0, 0.0, 0.0, 0.0], [-3.0, 3.0, 0.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]],
     stride: 3,
     first: [0, 0],
 };

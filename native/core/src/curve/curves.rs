@@ -137,11 +137,19 @@ impl Curves {
     fn validate_radii(&self, radii: &[f32]) -> Result<(), Error> {
         if let Some(point) = radii.par_iter().position_first(|r| !(0.0..=MAX_COORDINATE).contains(r)) {
             let (curve, index) = self.locate(point);
-            return Err(Error::Radius { curve, index, value: radii[point], reason: "it must be finite and not negative" });
+            return Err(Error::Radius {
+                curve,
+                index,
+                value: radii[point],
+                reason: "it must be finite and not negative",
+            });
         }
-        let zero = |curve: &usize| radii[self.range(*curve)].iter().all(|&r| r == 0.0) && !self.range(*curve).is_empty();
+        let zero =
+            |curve: &usize| radii[self.range(*curve)].iter().all(|&r| r == 0.0) && !self.range(*curve).is_empty();
         match (0..self.len()).into_par_iter().find_first(zero) {
-            Some(curve) => Err(Error::Radius { curve, index: 0, value: 0.0, reason: "all radii of the curve are zero" }),
+            Some(curve) => {
+                Err(Error::Radius { curve, index: 0, value: 0.0, reason: "all radii of the curve are zero" })
+            }
             None => Ok(()),
         }
     }
@@ -154,12 +162,12 @@ impl Curves {
             Basis::CatmullRom | Basis::Linear if !closed => (n >= 2, "at least 2".to_owned()),
             Basis::BSpline if !closed => (n >= 4, "at least 4".to_owned()),
             Basis::CatmullRom | Basis::Linear | Basis::BSpline => (n >= 3, "at least 3".to_owned()),
-            Basis::Bezier if closed => (n >= 3 && n % 3 == 0, "3, 6, 9, … points".to_owned()),
+            Basis::Bezier if closed => (n >= 3 && n.is_multiple_of(3), "3, 6, 9, … points".to_owned()),
             Basis::Bezier => (n >= 4 && n % 3 == 1, "4, 7, 10, … points".to_owned()),
             Basis::Nurbs(nurbs) => {
                 let least = nurbs.order.max(if closed { 3 } else { 2 });
                 (n >= least, format!("at least {least} for its order, {}", nurbs.order))
-            },
+            }
         };
         if !enough {
             let kind = format!("{} {}", if closed { "closed" } else { "open" }, basis.name());
@@ -193,8 +201,11 @@ fn validate_nurbs(nurbs: &Nurbs, points: usize, closed: bool) -> Result<(), Stri
         }
     }
     let bezier = matches!(nurbs.knots, KnotMode::Bezier | KnotMode::EndpointBezier);
-    if bezier && closed && points % (order - 1) != 0 {
-        return Err(format!("of order {order} is closed with Bézier knots: {points} points are not a multiple of {}", order - 1));
+    if bezier && closed && !points.is_multiple_of(order - 1) {
+        return Err(format!(
+            "of order {order} is closed with Bézier knots: {points} points are not a multiple of {}",
+            order - 1
+        ));
     }
     if let KnotMode::Explicit(knots) = &nurbs.knots {
         let expected = nurbs.knot_count(points, closed);
@@ -210,5 +221,9 @@ fn validate_nurbs(nurbs: &Nurbs, points: usize, closed: bool) -> Result<(), Stri
     }
     let knots = nurbs.knot_vector(points, closed);
     let (start, end) = (knots[order - 1], knots[knots.len() - order]);
-    if end > start && (knots[knots.len() - 1] - knots[0]).is_finite() { Ok(()) } else { Err(format!("its knots leave no domain, {start} to {end}")) }
+    if end > start && (knots[knots.len() - 1] - knots[0]).is_finite() {
+        Ok(())
+    } else {
+        Err(format!("its knots leave no domain, {start} to {end}"))
+    }
 }

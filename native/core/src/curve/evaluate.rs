@@ -141,7 +141,9 @@ impl<'a> Curve<'a> {
         match &self.form {
             Form::Cubic(basis) => {
                 let p = self.support(basis, segment, |i| to_f64(self.points[i]));
-                Segment::Polynomial(basis.coefficients.map(|row| p[0] * row[0] + p[1] * row[1] + p[2] * row[2] + p[3] * row[3]))
+                Segment::Polynomial(
+                    basis.coefficients.map(|row| p[0] * row[0] + p[1] * row[1] + p[2] * row[2] + p[3] * row[3]),
+                )
             }
             Form::Nurbs { .. } => Segment::Rational { curve: self, segment },
         }

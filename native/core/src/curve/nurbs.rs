@@ -62,7 +62,14 @@ impl Nurbs {
             (false, _) => &[inner.min(2)],
         };
         // The part before the repetition (closed) or before the clamped end (open).
-        let body = count - if closed { 2 * order - 1 } else if clamped { order } else { 0 };
+        let body = count
+            - if closed {
+                2 * order - 1
+            } else if clamped {
+                order
+            } else {
+                0
+            };
         let mut knots = Vec::with_capacity(count);
         let mut value = 0.0;
         let mut groups = head.iter().copied().chain(std::iter::repeat(inner));
@@ -83,7 +90,7 @@ impl Nurbs {
 }
 
 /// Basis functions that are non-zero on the span `knots[span]..knots[span + 1]`, by the Cox-de Boor recursion, and
-/// their derivatives by differences of the next lower degree (Piegl and Tiller 1997, Eqs. 2.5 and 2.7).
+/// their derivatives by differences of the next lower degree ([PieglTiller1997], Eqs. 2.5 and 2.7).
 /// Entry `j` belongs to control point `span - degree + j`.
 pub(super) fn basis_functions(knots: &[f64], span: usize, order: usize, u: f64) -> Weights {
     let ratio = |numerator: f64, denominator: f64| if denominator > 0.0 { numerator / denominator } else { 0.0 };

@@ -205,7 +205,7 @@ fn occupancy(lines: &Lines<'_>, origin: DVec3, cell: f64) -> f64 {
     let mut found: Vec<[i32; 3]> = (0..lines.positions.len())
         .into_par_iter()
         .map(|k| cell_of(lines.position(k), origin, cell).to_array())
-        .filter(|c| hash(*c) % thinning == 0)
+        .filter(|c| hash(*c).is_multiple_of(thinning))
         .collect();
     let knots = found.len();
     found.par_sort_unstable();

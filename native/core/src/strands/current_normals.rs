@@ -56,12 +56,13 @@ pub(super) fn current_normals(shapes: &Shapes<'_>) -> Vec<[f32; 3]> {
     let weights = window();
     let stretches = shapes.layout.stretches(STRETCH);
     let mut normals = vec![[0.0; 3]; shapes.positions.len()];
-    split_mut(&mut normals, &stretches).into_par_iter().zip(&stretches).for_each(|(normals, stretch)| {
-        match rotations[stretch.curve] {
-            Some(rotation) => turn_stretch(shapes, stretch, rotation, &weights, normals),
+    split_mut(&mut normals, &stretches).into_par_iter().zip(&stretches).for_each_init(
+        Scratch::default,
+        |scratch, (normals, stretch)| match rotations[stretch.curve] {
+            Some(rotation) => turn_stretch(shapes, stretch, rotation, &weights, scratch, normals),
             None => normals.copy_from_slice(&shapes.rest_normals[stretch.start..stretch.end]),
-        }
-    });
+        },
+    );
     normals
 }
 
@@ -76,7 +77,8 @@ fn window() -> [f64; 2 * REACH] {
 /// The best rotation of each whole curve; `None` for a curve in its rest shape.
 fn curve_rotations(shapes: &Shapes<'_>) -> Vec<Option<DQuat>> {
     let stretches = shapes.layout.stretches(16 * STRETCH);
-    let sums: Vec<(bool, Correlation)> = stretches.par_iter().map(|stretch| correlate_stretch(shapes, stretch)).collect();
+    let sums: Vec<(bool, Correlation)> =
+        stretches.par_iter().map(|stretch| correlate_stretch(shapes, stretch)).collect();
     let mut curves = vec![(false, Correlation::ZERO); shapes.layout.len()];
     for (stretch, (moved, sum)) in stretches.iter().zip(sums) {
         let curve = &mut curves[stretch.curve];
@@ -84,9 +86,8 @@ fn curve_rotations(shapes: &Shapes<'_>) -> Vec<Option<DQuat>> {
         curve.1.matrix += sum.matrix;
         curve.1.scale += sum.scale;
     }
-    let rotation = |sum: &Correlation| {
-        (0..IDENTITY_ROUNDS).fold(DQuat::IDENTITY, |prior, _| sum.rotation(prior, IDENTITY_WEIGHT))
-    };
+    let rotation =
+        |sum: &Correlation| (0..IDENTITY_ROUNDS).fold(DQuat::IDENTITY, |prior, _| sum.rotation(prior, IDENTITY_WEIGHT));
     curves.par_iter().map(|(moved, sum)| moved.then(|| rotation(sum))).collect()
 }
 
@@ -106,7 +107,8 @@ fn correlate_stretch(shapes: &Shapes<'_>, stretch: &Stretch) -> (bool, Correlati
 }
 
 fn correlation(p: [f64; PRODUCT]) -> Correlation {
-    let matrix = DMat3::from_cols(DVec3::new(p[0], p[1], p[2]), DVec3::new(p[3], p[4], p[5]), DVec3::new(p[6], p[7], p[8]));
+    let matrix =
+        DMat3::from_cols(DVec3::new(p[0], p[1], p[2]), DVec3::new(p[3], p[4], p[5]), DVec3::new(p[6], p[7], p[8]));
     Correlation { matrix, scale: p[9] }
 }
 
@@ -131,27 +133,36 @@ fn edge_product(shapes: &Shapes<'_>, curve: usize, from: isize) -> Option<[f64; 
     Some([x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z, scale])
 }
 
+/// Edge products and their weighted sums, component by component, so that the sums run over consecutive numbers.
+struct Scratch {
+    products: [[f64; STRETCH + 2 * REACH]; PRODUCT],
+    sums: [[f64; STRETCH]; PRODUCT],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { products: [[0.0; STRETCH + 2 * REACH]; PRODUCT], sums: [[0.0; STRETCH]; PRODUCT] }
+    }
+}
+
 fn turn_stretch(
     shapes: &Shapes<'_>,
     stretch: &Stretch,
     curve_rotation: DQuat,
     weights: &[f64; 2 * REACH],
+    Scratch { products, sums }: &mut Scratch,
     normals: &mut [[f32; 3]],
 ) {
-    const EDGES: usize = STRETCH + 2 * REACH;
-    // Component by component, so that the weighted sums run over consecutive numbers.
-    let mut products = [[0.0; EDGES]; PRODUCT];
     let count = stretch.end - stretch.start;
     for edge in 0..count + 2 * REACH - 1 {
         let from = (stretch.start + edge) as isize - REACH as isize;
-        if let Some(product) = edge_product(shapes, stretch.curve, from) {
-            for (component, value) in products.iter_mut().zip(product) {
-                component[edge] = value;
-            }
+        let product = edge_product(shapes, stretch.curve, from).unwrap_or([0.0; PRODUCT]);
+        for (component, value) in products.iter_mut().zip(product) {
+            component[edge] = value;
         }
     }
-    let mut sums = [[0.0; STRETCH]; PRODUCT];
-    for (sums, products) in sums.iter_mut().zip(&products) {
+    for (sums, products) in sums.iter_mut().zip(products) {
+        sums[..count].fill(0.0);
         for (j, weight) in weights.iter().enumerate() {
             for (sum, product) in sums[..count].iter_mut().zip(&products[j..]) {
                 *sum += weight * product;

@@ -208,7 +208,10 @@ fn needs_halving(curve: &Curve<'_>, knots: &[Knot], i: usize, tolerance: f64) ->
     [0.25, 0.5, 0.75].iter().any(|&t: &f64| {
         let (t2, t3) = (t * t, t * t * t);
         let drawn = 0.5
-            * (p[0] * (2.0 * t2 - t - t3) + p[1] * (3.0 * t3 - 5.0 * t2 + 2.0) + p[2] * (t + 4.0 * t2 - 3.0 * t3) + p[3] * (t3 - t2));
+            * (p[0] * (2.0 * t2 - t - t3)
+                + p[1] * (3.0 * t3 - 5.0 * t2 + 2.0)
+                + p[2] * (t + 4.0 * t2 - 3.0 * t3)
+                + p[3] * (t3 - t2));
         distance(curve, knots[i].place.segment as usize, start, end, t, drawn) > tolerance
     })
 }

@@ -39,16 +39,16 @@ fn transport(
     let start = tangent(0).any_orthonormal_vector();
     let mut normal = start;
     normals[0] = to_f32(normal);
-    for k in 1..positions.len() {
+    for (k, slot) in normals.iter_mut().enumerate().skip(1) {
         normal = step(normal, k - 1, k);
-        normals[k] = to_f32(normal);
+        *slot = to_f32(normal);
     }
     if let Some(total) = closed_length {
         let arrived = step(normal, positions.len() - 1, 0);
         let missed = arrived.cross(start).dot(tangent(0)).atan2(arrived.dot(start));
-        for k in 1..positions.len() {
-            let turn = DQuat::from_axis_angle(tangent(k), missed * (lengths[k] - lengths[0]) / total);
-            normals[k] = to_f32(turn * to_f64(normals[k]));
+        for (k, slot) in normals.iter_mut().enumerate().skip(1) {
+            let turn = DQuat::from_axis_angle(tangent(k), missed * lengths[k] / total);
+            *slot = to_f32(turn * to_f64(*slot));
         }
     }
 }
@@ -63,11 +63,8 @@ fn double_reflection(normal: DVec3, tangent: DVec3, next_tangent: DVec3, edge: D
     let (normal, tangent) =
         if edge == DVec3::ZERO { (normal, tangent) } else { (reflect(normal, edge), reflect(tangent, edge)) };
     let axis = next_tangent - tangent;
-    let carried = if edge == DVec3::ZERO {
-        rotate_between(normal, tangent, next_tangent)
-    } else {
-        reflect(normal, axis)
-    };
+    let carried =
+        if edge == DVec3::ZERO { rotate_between(normal, tangent, next_tangent) } else { reflect(normal, axis) };
     unit_or_zero(carried - next_tangent * carried.dot(next_tangent))
 }
 

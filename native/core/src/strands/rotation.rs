@@ -1,4 +1,4 @@
-//! The rotation that carries one set of vectors best onto another, after Horn 1987, for sets that may lie in a plane
+//! The rotation that carries one set of vectors best onto another, after [Horn1987], for sets that may lie in a plane
 //! or on a line.
 
 use glam::{DMat3, DQuat};
@@ -38,7 +38,7 @@ impl Correlation {
     }
 }
 
-/// The symmetric matrix whose quadratic form over unit quaternions (w, x, y, z) is `tr(hᵀ q)` (Horn 1987, section 4).
+/// The symmetric matrix whose quadratic form over unit quaternions (w, x, y, z) is `tr(hᵀ q)` ([Horn1987], section 4).
 fn quaternion_form(h: &DMat3) -> [[f64; 4]; 4] {
     // `s(a, b)`: from component a to component b.
     let s = |a: usize, b: usize| h.col(a)[b];
@@ -49,7 +49,7 @@ fn quaternion_form(h: &DMat3) -> [[f64; 4]; 4] {
 }
 
 /// Newton's iteration on the characteristic polynomial from an upper bound: it descends to the largest root, however
-/// close the next one is (Theobald 2005, Eqs. 7 to 9).
+/// close the next one is [Theobald2005].
 fn largest_eigenvalue(h: &DMat3, k: &[[f64; 4]; 4], bound: f64) -> Option<f64> {
     let norm_squared = h.x_axis.length_squared() + h.y_axis.length_squared() + h.z_axis.length_squared();
     if !(norm_squared > 0.0 && bound > 0.0) {
@@ -158,10 +158,8 @@ mod tests {
         for flat in [1.0, 1e-3, 0.0] {
             for _ in 0..200 {
                 let q = turn(&mut seed);
-                let pairs: Vec<_> = (0..9)
-                    .map(|_| vector(&mut seed) * DVec3::new(1.0, 1.0, flat))
-                    .map(|a| (a, q * a))
-                    .collect();
+                let pairs: Vec<_> =
+                    (0..9).map(|_| vector(&mut seed) * DVec3::new(1.0, 1.0, flat)).map(|a| (a, q * a)).collect();
                 let found = correlate(&pairs).rotation(q, 1e-3);
                 assert!(found.dot(q).abs() > 1.0 - 1e-13, "{found} is not {q}");
                 // With a wrong prior the answer is off by about the prior's weight, no more.
@@ -176,9 +174,16 @@ mod tests {
         let mut seed = 2;
         for _ in 0..200 {
             let (a, b) = (vector(&mut seed).normalize(), vector(&mut seed).normalize());
-            let found = correlate(&[(a, b), (a * 2.0, b * 3.0)]).rotation(DQuat::IDENTITY, 1e-6);
             let expected = DQuat::from_rotation_arc(a, b);
-            assert!(found.dot(expected).abs() > 1.0 - 1e-10, "{found} is not {expected}");
+            if a.dot(b) < -0.9 {
+                continue; // Close to 180° the nearest rotation is ill determined.
+            }
+            // The prior bends the line by its weight, which tilts the rotation by as much.
+            for weight in [1e-3, 1e-4] {
+                let found = correlate(&[(a, b), (a * 2.0, b * 3.0)]).rotation(DQuat::IDENTITY, weight);
+                let error = (1.0 - found.dot(expected).powi(2)).max(0.0).sqrt();
+                assert!(error < weight, "{found} is not {expected}: {error}");
+            }
         }
     }
 

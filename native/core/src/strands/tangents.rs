@@ -8,7 +8,8 @@ use rayon::prelude::*;
 const STRETCH: usize = 4096;
 
 /// One unit tangent per knot. Where the derivative vanishes (repeated points, a reversal), the tangent of the knot
-/// before is kept, at a curve's start that of the knot after. A curve whose knots all coincide keeps `fallback`.
+/// before is kept, at a curve's start that of the knot after. If it vanishes everywhere, the first edge gives the
+/// direction; a curve whose knots all coincide keeps `fallback`.
 pub(super) fn tangents(positions: &[[f32; 3]], layout: Layout<'_>, fallback: Option<&[[f32; 3]]>) -> Vec<[f32; 3]> {
     let mut tangents = vec![[0.0; 3]; positions.len()];
     let stretches = layout.stretches(STRETCH);
@@ -30,7 +31,7 @@ pub(super) fn tangents(positions: &[[f32; 3]], layout: Layout<'_>, fallback: Opt
     for curve in vanishing {
         if done != Some(curve) {
             let range = layout.range(curve);
-            fill(&mut tangents[range.clone()], fallback.map(|f| &f[range]));
+            fill(&mut tangents[range.clone()], &positions[range.clone()], fallback.map(|f| &f[range]));
             done = Some(curve);
         }
     }
@@ -57,9 +58,11 @@ pub(super) fn unit_or_zero(v: DVec3) -> DVec3 {
     if length > 0.0 { v / length } else { DVec3::ZERO }
 }
 
-fn fill(tangents: &mut [[f32; 3]], fallback: Option<&[[f32; 3]]>) {
+fn fill(tangents: &mut [[f32; 3]], knots: &[[f32; 3]], fallback: Option<&[[f32; 3]]>) {
     let Some(first) = tangents.iter().position(|t| *t != [0.0; 3]) else {
-        if let Some(fallback) = fallback {
+        if let Some(edge) = knots.windows(2).find(|edge| edge[0] != edge[1]) {
+            tangents.fill(to_f32(unit_or_zero(to_f64(edge[1]) - to_f64(edge[0]))));
+        } else if let Some(fallback) = fallback {
             tangents.copy_from_slice(fallback);
         }
         return;

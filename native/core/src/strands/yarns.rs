@@ -75,7 +75,8 @@ impl Strands {
         &self.positions
     }
 
-    /// `k` unit normals in the current shape, perpendicular to the Catmull-Rom tangent at the knot.
+    /// `k` unit normals in the current shape, perpendicular to the Catmull-Rom tangent at the knot; where that vanishes
+    /// (repeated points, a reversal), to the tangent of the knot before.
     pub fn normals(&self) -> &[[f32; 3]] {
         &self.normals
     }
@@ -105,7 +106,7 @@ impl Strands {
         &self.knots.total_lengths
     }
 
-    /// `c` mean radii of the rest curves. They set the scale of the twist.
+    /// `c` mean radii of the curves' control points. They set the scale of the twist.
     pub fn reference_radii(&self) -> &[f64] {
         &self.knots.reference_radii
     }
@@ -135,8 +136,9 @@ impl Yarns {
             Some(Arc::new(Plan::new(&curves, &reference)?))
         };
         let points = Arc::new(curves.points.clone());
-        let rest = Rest::new(curves, radii, plan, &points);
-        let strands = Strands { positions: rest.positions.clone(), normals: rest.normals.clone(), knots: rest.knots.clone() };
+        let rest = Rest::new(curves, radii, reference, plan, &points);
+        let strands =
+            Strands { positions: rest.positions.clone(), normals: rest.normals.clone(), knots: rest.knots.clone() };
         Ok(Self { rest: Arc::new(rest), points, strands: OnceLock::from(strands) })
     }
 
@@ -254,22 +256,22 @@ impl Yarns {
 }
 
 impl Rest {
-    fn new(curves: Curves, radii: Vec<f32>, plan: Option<Arc<Plan>>, points: &Arc<Vec<[f32; 3]>>) -> Self {
+    fn new(
+        curves: Curves,
+        radii: Vec<f32>,
+        reference_radii: Vec<f64>,
+        plan: Option<Arc<Plan>>,
+        points: &Arc<Vec<[f32; 3]>>,
+    ) -> Self {
         let (positions, knot_radii, offsets) = match &plan {
             None => (points.clone(), radii.clone(), curves.offsets.clone()),
-            Some(plan) => (Arc::new(plan.positions(&curves, points)), plan.radii(&curves, &radii), plan.offsets.clone()),
+            Some(plan) => {
+                (Arc::new(plan.positions(&curves, points)), plan.radii(&curves, &radii), plan.offsets.clone())
+            }
         };
         let (lengths, total_lengths) = rest_lengths(&curves, &plan, &offsets);
-        let mut knots = Knots {
-            offsets,
-            closed: curves.closed.clone(),
-            lengths,
-            total_lengths,
-            radii: knot_radii,
-            reference_radii: Vec::new(),
-        };
-        knots.reference_radii =
-            (0..curves.len()).into_par_iter().map(|i| mean(&knots.radii[knots.layout().range(i)])).collect();
+        let closed = curves.closed.clone();
+        let knots = Knots { offsets, closed, lengths, total_lengths, radii: knot_radii, reference_radii };
         let tangents = tangents(&positions, knots.layout(), None);
         let normals = rest_normals(&positions, &tangents, &knots.lengths, &knots.total_lengths, knots.layout());
         let length_coordinates = match &plan {
@@ -379,7 +381,11 @@ fn validate_coordinates(coordinates: &[f32]) -> Result<(), (usize, f32, &'static
         before = value;
     }
     let last = coordinates.len() - 1;
-    if coordinates[last] > coordinates[0] { Ok(()) } else { Err((last, before, "the curve's coordinates are all equal")) }
+    if coordinates[last] > coordinates[0] {
+        Ok(())
+    } else {
+        Err((last, before, "the curve's coordinates are all equal"))
+    }
 }
 
 fn raise_zeros(curves: &Curves, mut radii: Vec<f32>) -> Vec<f32> {
@@ -407,6 +413,7 @@ fn estimate_radius(curves: &Curves) -> Result<f32, Error> {
         (&sampled.positions(curves, &curves.points), &sampled.offsets)
     };
     let layout = Layout { offsets, closed: &curves.closed };
-    let radius = radius_by_closest_approach(positions, layout).unwrap_or_else(|| LONE_RADIUS * mean_edge(positions, layout));
+    let radius =
+        radius_by_closest_approach(positions, layout).unwrap_or_else(|| LONE_RADIUS * mean_edge(positions, layout));
     Ok(radius.max(f64::from(f32::MIN_POSITIVE)) as f32)
 }
