@@ -31,7 +31,9 @@ def _length(name, description, **options):
 
 
 def _variate(name, description):
-    return FloatVectorProperty(name=name, description=f"{description}: mean and standard deviation", size=2, precision=4)
+    return FloatVectorProperty(
+        name=name, description=f"{description}: mean and standard deviation", size=2, precision=4
+    )
 
 
 def _color(name, description):

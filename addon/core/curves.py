@@ -101,7 +101,7 @@ class CurveArrays:
         return None
 
     def at_rest(self, rest):
-        """These curves in the shape they have in `rest`: this frame's radii and weights, the other's points and lengths."""
+        """These curves in the shape of `rest`: this frame's radii and weights, the other's points and lengths."""
         return replace(
             rest,
             radii=self.radii,

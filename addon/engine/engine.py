@@ -2,7 +2,8 @@
 """The engine that Blender talks to.
 
 Nothing may leave `render` but a written result: an exception, or no result, makes Blender crash when it saves the
-frame. So whatever happens, a full-size result is delivered, and then an error report stops the job before Blender saves it.
+frame. So whatever happens, a full-size result is delivered, and then an error report stops the job before Blender
+saves it.
 """
 
 import traceback
@@ -31,9 +32,7 @@ class LisleRenderEngine(bpy.types.RenderEngine):
         result, error = None, None
         try:
             # Blender cuts the rectangle to the border, exactly as it will use it.
-            result = self.begin_result(
-                0, 0, self.resolution_x, self.resolution_y, layer=depsgraph.view_layer.name
-            )
+            result = self.begin_result(0, 0, self.resolution_x, self.resolution_y, layer=depsgraph.view_layer.name)
             image = draw(self, depsgraph, (result.resolution_x, result.resolution_y), notes.append)
             write_passes(result, image)
         except BaseException as caught:

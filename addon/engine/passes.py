@@ -32,7 +32,11 @@ PASSES = (
     Pass("Normal", "XYZ", "VECTOR", "normal", "use_pass_normal"),
     # Blender 5.0 spelled the names of its passes out.
     Pass(
-        "Object Index" if bpy.app.version >= (5, 0, 0) else "IndexOB", "X", "VALUE", "object_id", "use_pass_object_index"
+        "Object Index" if bpy.app.version >= (5, 0, 0) else "IndexOB",
+        "X",
+        "VALUE",
+        "object_id",
+        "use_pass_object_index",
     ),
     Pass("Tangent", "XYZ", "VECTOR", "tangent", "lisle.use_pass_tangent"),
     Pass("Alpha", "A", "VALUE", "alpha", "lisle.use_pass_alpha"),

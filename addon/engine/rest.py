@@ -48,7 +48,10 @@ class RestShapes:
                 for geometry in geometries:
                     if geometry.key not in found:
                         raise RestShapeError(
-                            geometry.object_name, frame, reference_frame, "it shows no such curves at its reference frame"
+                            geometry.object_name,
+                            frame,
+                            reference_frame,
+                            "it shows no such curves at its reference frame",
                         )
                     curves = found[geometry.key].curves
                     self._curves[(*view, reference_frame, geometry.key)] = curves

@@ -70,9 +70,9 @@ def _metres_per_radius(obj):
 
 def _radii_in_metres(radii, obj):
     """Radii that are the splines' own are relative; others were set by geometry nodes, in metres."""
-    own = read_splines(obj.data)
-    if own is not None and any(m.type == "NODES" and m.show_render for m in obj.modifiers):
-        if len(own.radii) != len(radii) or not np.array_equal(own.radii, radii):
+    if any(modifier.type == "NODES" and modifier.show_render for modifier in obj.modifiers):
+        own = read_splines(obj.data)
+        if own is None or not np.array_equal(own.radii, radii):
             return radii
     return radii * np.float32(_metres_per_radius(obj))
 

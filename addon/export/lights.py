@@ -34,9 +34,7 @@ def native_light(lisle, obj, matrix_world, note):
     }
     if light.type == "POINT":
         return lisle.Point(**common)
-    return lisle.Spot(
-        **common, direction=tuple(direction), cone_angle_rad=light.spot_size, blend=light.spot_blend
-    )
+    return lisle.Spot(**common, direction=tuple(direction), cone_angle_rad=light.spot_size, blend=light.spot_blend)
 
 
 def _area(lisle, light, matrix_world, world_from_light, power, color):
@@ -60,4 +58,7 @@ def _has_used_nodes(light):
     if not light.use_nodes:
         return False
     plain = {"OUTPUT_LIGHT", "EMISSION"}
-    return any(node.type not in plain or any(i.is_linked for i in node.inputs if i.name != "Surface") for node in light.node_tree.nodes)
+    return any(
+        node.type not in plain or any(i.is_linked for i in node.inputs if i.name != "Surface")
+        for node in light.node_tree.nodes
+    )

@@ -96,9 +96,7 @@ def collect(lisle, depsgraph, note, only=None):
             if not instance.show_self and len(part.key) == 1:
                 continue
             for transform in transforms:
-                content.placements.append(
-                    Placement(part.key, world_from_object @ transform, obj.pass_index, obj.name)
-                )
+                content.placements.append(Placement(part.key, world_from_object @ transform, obj.pass_index, obj.name))
     if meshes and only is None:
         note(f"{meshes} mesh object(s) without curves are not drawn")
     content.placements.sort(key=Placement.order)

@@ -1,8 +1,8 @@
 """Runs every test that touches Blender in a process of its own.
 
 `python -m pytest tests/blender` with the Python of any supported `bpy` (4.5, 5.0, 5.2). A test marked
-`blender` is run by a child pytest: Blender may crash in it, keeps global state, and is known to hang at exit, so the child
-leaves with `os._exit` and reports through a file.
+`blender` is run by a child pytest: Blender may crash in it, keeps global state, and is known to hang at exit, so the
+child leaves with `os._exit` and reports through a file.
 
 Markers: `blender` uses the stand-in for the native module in `fake_lisle/`, which records what it is given;
 `blender("wheel")` uses the real `lisle`, and is skipped where it is not installed.
@@ -100,7 +100,9 @@ def pytest_unconfigure(config):
 
 
 def _load_package(name, folder):
-    spec = importlib.util.spec_from_file_location(name, folder / "__init__.py", submodule_search_locations=[str(folder)])
+    spec = importlib.util.spec_from_file_location(
+        name, folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
     package = importlib.util.module_from_spec(spec)
     sys.modules[name] = package
     spec.loader.exec_module(package)

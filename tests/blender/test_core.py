@@ -18,7 +18,7 @@ from lisle_blender.core.pixels import pass_rect
 
 
 def arrays(counts, **changes):
-    offsets = np.concatenate(([0], np.cumsum(counts))).astype(np.uint32)
+    offsets = np.cumsum([0, *counts]).astype(np.uint32)
     n, c = int(offsets[-1]), len(counts)
     values = {
         "points": np.arange(n * 3, dtype=np.float32).reshape(n, 3),

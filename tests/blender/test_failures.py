@@ -128,7 +128,7 @@ def test_no_camera_is_an_error_of_blender_or_ours(lisle):
 
     scenes.curves("Yarn", scenes.line())
     bpy.context.scene.camera = None
-    with pytest.raises(RuntimeError, match="[Cc]amera"):
+    with pytest.raises(RuntimeError, match=r"[Cc]amera"):
         bpy.ops.render.render()
 
 

@@ -73,8 +73,7 @@ class Yarns:
 
 
 class _Values:
-    FIELDS = {}
-    PRESETS = ()
+    """Subclasses say which FIELDS and PRESETS there are."""
 
     def __init__(self, **values):
         self.__dict__.update(values)
@@ -168,7 +167,9 @@ class Renderer:
     adapter = "a stand-in, no GPU"
 
     def render(self, scene, *, size, samples, region, transparent, progress, **settings):
-        scenes.append((scene, {"size": size, "samples": samples, "region": region, "transparent": transparent} | settings))
+        scenes.append(
+            (scene, {"size": size, "samples": samples, "region": region, "transparent": transparent} | settings)
+        )
         _fail("render")
         if not progress(0.5):
             raise Cancelled("cancelled")
@@ -194,7 +195,9 @@ class Renderer:
             seen = (x >= 0) & (x < width) & (row >= 0) & (row < height) & (clip[:, 3] > 0)
             x, row = x[seen], row[seen]
             lengths = entry.yarns.length_coordinates[seen]
-            image["combined"][row, x] = np.stack((lengths, lengths * 0.5, np.ones_like(lengths), np.ones_like(lengths)), 1)
+            image["combined"][row, x] = np.stack(
+                (lengths, lengths * 0.5, np.ones_like(lengths), np.ones_like(lengths)), 1
+            )
             image["depth"][row, x] = -in_camera[seen, 2]
             image["alpha"][row, x] = 1
             image["normal"][row, x] = (0, 0, 1)

@@ -1,0 +1,242 @@
+"""Materials, lights, camera and world, as they reach the native module."""
+
+import numpy as np
+import pytest
+import scenes
+
+pytestmark = pytest.mark.blender
+
+
+def render(lisle):
+    import bpy
+
+    bpy.ops.render.render()
+    return lisle.scenes[-1][0]
+
+
+def material(name="Material"):
+    import bpy
+
+    return bpy.data.materials.new(name)
+
+
+def test_no_material_is_the_default(lisle):
+    obj = scenes.curves("Yarn", scenes.line())
+    bare = render(lisle).entries[0]
+    obj.data.materials.append(material())
+    untouched = render(lisle).entries[0]
+    obj.data.materials[0] = None
+    empty_slot = render(lisle).entries[0]
+    for entry in (untouched, empty_slot):
+        assert entry.yarn.__dict__ == bare.yarn.__dict__
+        assert entry.material.__dict__ == bare.material.__dict__
+
+
+def test_presets_reach_the_renderer(lisle):
+    mat = material()
+    scenes.curves("Yarn", scenes.line()).data.materials.append(mat)
+    mat.lisle.yarn.preset, mat.lisle.fiber.preset = "silk-2", "gabardine"
+    entry = render(lisle).entries[0]
+    assert (entry.yarn.name, entry.material.name) == ("silk-2", "gabardine")
+
+
+def test_customizing_starts_from_the_preset(lisle):
+    mat = material()
+    scenes.curves("Yarn", scenes.line()).data.materials.append(mat)
+    yarn, fiber = mat.lisle.yarn, mat.lisle.fiber
+    yarn.plies = 9
+    assert render(lisle).entries[0].yarn.plies == 3, "numbers do not count before 'Customize'"
+    yarn.customize = fiber.customize = True
+    assert yarn.plies == 3 and yarn.hair_density == pytest.approx(33.77)
+    yarn.plies, yarn.loop_r_max = 2, (0.5, 0.25)
+    fiber.color_tt = (0.25, 0.5, 0.75)
+    entry = render(lisle).entries[0]
+    assert entry.yarn.plies == 2 and entry.yarn.loop_r_max == (0.5, 0.25)
+    assert entry.yarn.ply_twist == pytest.approx(0.453)
+    assert entry.material.color_tt == (0.25, 0.5, 0.75) and entry.material.beta_r_deg == pytest.approx(1)
+    yarn.preset = "rayon-1"
+    assert yarn.plies == 3, "choosing a preset sets all numbers again"
+
+
+def test_animated_material_numbers(lisle):
+    import bpy
+
+    mat = material()
+    scenes.curves("Yarn", scenes.line()).data.materials.append(mat)
+    mat.lisle.yarn.customize = True
+    for frame, density in ((1, 10), (3, 30)):
+        mat.lisle.yarn.hair_density = density
+        mat.lisle.yarn.keyframe_insert("hair_density", frame=frame)
+    bpy.context.scene.frame_set(3)
+    assert render(lisle).entries[0].yarn.hair_density == pytest.approx(30)
+
+
+@pytest.mark.parametrize("legacy", [False, True])
+def test_one_object_with_two_materials(lisle, legacy):
+    first, second = scenes.line(), scenes.line(7, (-3, 1, 0), (3, 1, 0))
+    if legacy:
+        obj = scenes.legacy("Yarn", "POLY", first.tolist())
+        scenes.add_spline(obj.data, "POLY", second.tolist()).material_index = 1
+    else:
+        obj = scenes.curves("Yarn", first, second)
+    for preset in ("cotton-1", "silk-1"):
+        obj.data.materials.append(mat := material())
+        mat.lisle.yarn.preset = preset
+    if not legacy:
+        obj.data.attributes.new("material_index", "INT", "CURVE").data.foreach_set("value", [0, 1])
+    elif not obj.data.splines[1].material_index:  # set again: it is limited to the slots there are
+        obj.data.splines[1].material_index = 1
+    entries = render(lisle).entries
+    assert [(entry.yarn.name, len(entry.yarns.points)) for entry in entries] == [("cotton-1", 20), ("silk-1", 7)]
+    np.testing.assert_allclose(entries[1].yarns.points, second)
+
+
+def test_a_slot_linked_to_the_object_wins(lisle):
+    obj = scenes.curves("Yarn", scenes.line())
+    obj.data.materials.append(mat := material("Of the data"))
+    mat.lisle.yarn.preset = "silk-1"
+    obj.material_slots[0].link = "OBJECT"
+    obj.material_slots[0].material = mat = material("Of the object")
+    mat.lisle.yarn.preset = "rayon-4"
+    assert render(lisle).entries[0].yarn.name == "rayon-4"
+
+
+def test_material_set_by_geometry_nodes(lisle):
+    mat = material()
+    mat.lisle.yarn.preset = "rayon-4"
+    for obj in (scenes.curves("Own", scenes.line()), scenes.empty_mesh("Maker")):
+        nodes = scenes.Nodes(obj)
+        geometry = nodes.input
+        if obj.type == "MESH":
+            circle = nodes.new("CurvePrimitiveCircle").outputs[0]
+            geometry = nodes.new("InstanceOnPoints", Points=nodes.input, Instance=circle).outputs[0]
+        nodes.finish(nodes.new("SetMaterial", Geometry=geometry, Material=mat).outputs[0])
+    assert [entry.yarn.name for entry in render(lisle).entries] == ["rayon-4"] * 2
+
+
+def light(kind, **settings):
+    import bpy
+
+    data = bpy.data.lights.new("Light", kind)
+    for name, value in settings.items():
+        setattr(data, name, value)
+    obj = scenes.link(bpy.data.objects.new("Light", data))
+    obj.location = (1, 2, 3)
+    obj.rotation_euler = (np.pi / 2, 0, 0)  # turns its −Z to +Y
+    return obj
+
+
+def the_light(lisle, kind):
+    (native,) = render(lisle).lights
+    assert type(native).__name__ == kind
+    return native
+
+
+def test_sun(lisle):
+    light("SUN", energy=3, angle=0.1, color=(1, 0.5, 0.25))
+    sun = the_light(lisle, "Sun")
+    np.testing.assert_allclose(sun.direction, (0, 1, 0), atol=1e-6)
+    assert sun.strength == 3 and sun.color == (1, 0.5, 0.25) and sun.angle_rad == pytest.approx(0.1)
+
+
+def test_point(lisle):
+    obj = light("POINT", energy=40, shadow_soft_size=0.5, exposure=1)
+    point = the_light(lisle, "Point")
+    assert point.position == (1, 2, 3) and point.power == 80 and point.radius == 0.5
+    obj.data.normalize = False
+    assert the_light(lisle, "Point").power == pytest.approx(80 * np.pi)
+
+
+def test_light_temperature_tints(lisle):
+    obj = light("POINT", use_temperature=True, temperature=3000, color=(1, 1, 0.5))
+    red, green, blue = the_light(lisle, "Point").color
+    np.testing.assert_allclose((red, green, blue * 2), obj.data.temperature_color, rtol=1e-6)
+    assert red > green > blue
+
+
+def test_spot(lisle):
+    light("SPOT", energy=40, spot_size=1.25, spot_blend=0.5, shadow_soft_size=0.25).scale = (2, 3, 4)
+    spot = the_light(lisle, "Spot")
+    np.testing.assert_allclose(spot.direction, (0, 1, 0), atol=1e-6)
+    assert (spot.power, spot.cone_angle_rad, spot.blend, spot.radius) == (40, 1.25, 0.5, 0.25)
+
+
+@pytest.mark.parametrize(
+    ("shape", "native_shape", "size"),
+    [
+        ("SQUARE", "rectangle", (4, 6)),
+        ("RECTANGLE", "rectangle", (4, 1.5)),
+        ("DISK", "disk", (4, 6)),
+        ("ELLIPSE", "disk", (4, 1.5)),
+    ],
+)
+def test_area(lisle, shape, native_shape, size):
+    obj = light("AREA", energy=40, shape=shape, size=2, size_y=0.5)
+    obj.scale = (2, 3, 4)
+    area = the_light(lisle, "Area")
+    assert (area.shape, area.power) == (native_shape, 40)
+    np.testing.assert_allclose(area.size, size, rtol=1e-6)
+    np.testing.assert_allclose(area.world_from_light[:3, 3], (1, 2, 3))
+    np.testing.assert_allclose(area.world_from_light[:3, :3].T @ area.world_from_light[:3, :3], np.eye(3), atol=1e-6)
+    np.testing.assert_allclose(area.world_from_light[:3, 2], (0, -1, 0), atol=1e-6)
+
+
+def test_instanced_and_hidden_lights(lisle):
+    scenes.collection_instance("Lamps", light("POINT"), location=(10, 0, 0))
+    light("POINT").hide_render = True
+    assert the_light(lisle, "Point").position == (11, 2, 3)
+
+
+def project(camera, point):
+    """Normalised device coordinates, x and y in −1 to 1 inside the frame."""
+    clip = camera.clip_from_camera @ np.linalg.inv(camera.world_from_camera) @ (*point, 1)
+    return clip[:2] / clip[3]
+
+
+@pytest.mark.parametrize("kind", ["PERSP", "ORTHO"])
+@pytest.mark.parametrize("fit", ["AUTO", "HORIZONTAL", "VERTICAL"])
+@pytest.mark.parametrize("size", [(640, 480), (480, 640)])
+def test_camera_sees_what_blender_says(lisle, kind, fit, size):
+    """Blender's `world_to_camera_view` is the judge, with shift, scale and pixel aspect."""
+    import bpy
+    from bpy_extras.object_utils import world_to_camera_view
+    from mathutils import Vector
+
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = size
+    scene.render.pixel_aspect_y = 1.5
+    camera = scene.camera
+    camera.location, camera.rotation_euler, camera.scale = (3, -6, 4), (1, 0.1, 0.4), (2, 2, 2)
+    camera.data.type, camera.data.sensor_fit = kind, fit
+    camera.data.shift_x, camera.data.shift_y = 0.1, -0.05
+    camera.data.ortho_scale, camera.data.lens = 7, 35
+    scenes.curves("Yarn", scenes.line())
+    native = render(lisle).camera
+    assert native.size == size
+    for point in ((0, 0, 0), (1, 2, 0.5), (-2, 0.5, 1)):
+        expected = world_to_camera_view(scene, camera, Vector(point))
+        np.testing.assert_allclose(project(native, point) / 2 + 0.5, expected[:2], atol=1e-5)
+
+
+def test_world_without_nodes_and_with_unreadable_ones(lisle):
+    import bpy
+
+    scene = bpy.context.scene
+    scenes.curves("Yarn", scenes.line())
+    assert tuple(render(lisle).ambient) == (0, 0, 0)
+    world = scene.world = bpy.data.worlds.new("World")
+    if bpy.app.version < (5, 0, 0):
+        world.color = (0.1, 0.2, 0.3)
+        np.testing.assert_allclose(render(lisle).ambient, (0.1, 0.2, 0.3), rtol=1e-6)
+        world.use_nodes = True
+    tree = world.node_tree
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    background.inputs["Color"].default_value = (0.5, 0.25, 0.125, 1)
+    strength = tree.nodes.new("ShaderNodeValue")
+    strength.outputs[0].default_value = 3
+    tree.links.new(strength.outputs[0], background.inputs["Strength"])
+    np.testing.assert_allclose(render(lisle).ambient, (1.5, 0.75, 0.375))
+    tree.links.new(tree.nodes.new("ShaderNodeTexChecker").outputs[0], background.inputs["Color"])
+    np.testing.assert_allclose(render(lisle).ambient, (1.5, 0.75, 0.375))
+    tree.links.clear()
+    assert tuple(render(lisle).ambient) == (0, 0, 0)
