@@ -181,13 +181,19 @@ mod tests {
     }
 
     #[test]
-    fn catmull_rom_passes_through_its_control_points() {
-        let control = circle(3.0, 0.0, 9).points;
+    fn chords_lie_on_the_curve_that_is_rendered() {
+        let control: Vec<[f32; 3]> =
+            (0..9_i16).map(|i| [f32::from(i), f32::from(i * i % 5), f32::from(i % 3)]).collect();
         for closed in [false, true] {
-            let line = Polyline::from_catmull_rom(&control, closed, 8);
-            assert_eq!(line.points.len(), if closed { 72 } else { 65 });
-            for (i, point) in control.iter().enumerate() {
-                assert!(line.points[8 * i].distance(*point) < 1e-12);
+            let curves = lisle_core::curve::Curves::catmull_rom(vec![control.clone()], closed);
+            let curve = curves.curve(0);
+            let points: Vec<DVec3> = control.iter().map(|p| DVec3::from(p.map(f64::from))).collect();
+            let line = Polyline::from_catmull_rom(&points, closed, 8);
+            assert_eq!(line.points.len(), 8 * curve.segment_count() + usize::from(!closed));
+            for (i, point) in line.points.iter().enumerate() {
+                let segment = (i / 8).min(curve.segment_count() - 1);
+                let expected = curve.position(segment, i as f64 / 8.0 - segment as f64);
+                assert!(point.distance(expected) < 1e-12, "{closed}, {i}: {point} {expected}");
             }
         }
     }

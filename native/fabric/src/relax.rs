@@ -8,9 +8,9 @@
 //!       + `PRESSURE` · area + ½ `FLATTEN` Σ l₀ z²
 //!
 //! (l: distance of neighbouring control points, d: distance of two samples of the Catmull-Rom curve, h: their
-//! spacing; `FOLD` stiffens sharp bends) is minimised over the control points AND the width and height of the cell, with FIRE: damped dynamics
-//! that stop whenever they run uphill (Bitzek et al. 2006). Everything runs in one fixed order: the result is the
-//! same in every process. Lengths are in yarn radii.
+//! spacing; `FOLD` stiffens sharp bends) is minimised over the control points AND the width and height of the cell,
+//! with FIRE: damped dynamics that stop whenever they run uphill (Bitzek et al. 2006). Everything runs in one fixed
+//! order: the result is the same in every process. Lengths are in yarn radii.
 
 use crate::cell::Cell;
 use glam::{DVec2, DVec3};
@@ -46,8 +46,8 @@ const LARGEST_STEP: f64 = 0.05;
 /// The yarn grows from this part of its radius to all of it, in this many steps.
 const FIRST_THICKNESS: f64 = 0.4;
 const GROWTH_STEPS: usize = 2000;
-/// The solver rests when the root mean square of the forces is below this, and gives up improving after this many
-/// steps: what is left then is a slow drift of the cell's size that changes no contact.
+/// The solver rests when the root mean square of the forces is below this, or after this many steps: large repeats
+/// then still drift slowly in size, which does no harm, since the clearance is measured afterwards.
 const TOLERANCE: f64 = 1e-3;
 const STEPS: usize = 20_000;
 
@@ -57,8 +57,8 @@ pub(crate) fn relax(mut cell: Cell, loop_length: f64) -> Cell {
     let n = cell.points.len();
     let mut velocity = vec![DVec3::ZERO; n];
     let mut size_velocity = DVec2::ZERO;
-    // The strains of the cell are two more unknowns; this makes them as heavy as the points that they carry.
-    let inertia = cell.size * (n as f64).sqrt();
+    // The strains of the cell are two more unknowns, in units that let them move about as fast as the points.
+    let strain_unit = 1.0 / (cell.size * n as f64).powf(0.5);
     let mut step = 0.02;
     let mut mixing = 0.1;
     let mut downhill = 0;
@@ -67,7 +67,7 @@ pub(crate) fn relax(mut cell: Cell, loop_length: f64) -> Cell {
         let growth = (iteration as f64 / GROWTH_STEPS as f64).min(1.0);
         let diameter = 2.0 * (FIRST_THICKNESS + (1.0 - FIRST_THICKNESS) * growth);
         let (force, strain_force) = forces(&cell, rest, diameter, &mut contacts);
-        let size_force = strain_force / inertia;
+        let size_force = strain_force * strain_unit;
 
         let power: f64 =
             force.iter().zip(&velocity).map(|(f, v)| f.dot(*v)).sum::<f64>() + size_force.dot(size_velocity);
@@ -107,7 +107,7 @@ pub(crate) fn relax(mut cell: Cell, loop_length: f64) -> Cell {
             *v *= brake;
             *point += *v * step;
         }
-        let strain = (size_velocity * step / inertia * cell.size).clamp(DVec2::splat(-2e-3), DVec2::splat(2e-3));
+        let strain = (size_velocity * step * strain_unit).clamp(DVec2::splat(-2e-3), DVec2::splat(2e-3));
         let scale = DVec3::new(1.0 + strain.x, 1.0 + strain.y, 1.0);
         cell.size *= scale.truncate();
         for point in &mut cell.points {
