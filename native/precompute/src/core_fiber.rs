@@ -28,7 +28,7 @@ pub struct CoreFiber {
     pub half_width: f32,
     /// Per layer, the largest |v| that its fibers reach.
     pub layer_half_width: Vec<f32>,
-    /// [layer][u][v]: height h of the visible surface ([`HOLE`] where there is none), offset across the fiber in [−1, 1] (towards +v),
+    /// `[layer][u][v]`: height h of the visible surface ([`HOLE`] where there is none), offset across the fiber in [−1, 1] (towards +v),
     /// and dh/dθ, dv/dθ of the visible fiber's centre line, θ the bundle's angle in radians.
     pub texels: Vec<[f32; 4]>,
 }

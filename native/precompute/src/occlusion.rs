@@ -23,7 +23,7 @@ pub struct Occlusion {
     pub size: usize,
     /// Half side of the square covered, in outer radii.
     pub extent: f32,
-    /// Visibility in [0, 1] as [y][x], section coordinates.
+    /// Visibility in [0, 1] as `[y][x]`, section coordinates.
     pub visibility: Vec<f32>,
     /// The distance-based way: c₀ + c₁ρ + c₂ρ² + c₃ρ³ with ρ = min(|q|, extent), the least-squares fit to the mean over the angle;
     /// clamped to [0, 1], beyond which it swings by a percent near the centre of dense yarns.
@@ -33,7 +33,7 @@ pub struct Occlusion {
 /// Visibility at section points, from fine slices of optical depth.
 struct Slices {
     plies: u32,
-    /// Light angle and [y][x] depths, over one sector.
+    /// Light angle and `[y][x]` depths, over one sector.
     sector: Vec<(f64, Vec<f64>)>,
 }
 

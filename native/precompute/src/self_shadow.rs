@@ -33,14 +33,14 @@ pub struct SelfShadow {
     pub extent: f32,
     /// Plies, K.
     pub plies: u32,
-    /// τ as [slice][y][x], in the section turned so that the light is at +x.
+    /// τ as `[slice][y][x]`, in the section turned so that the light is at +x.
     pub optical_depth: Vec<f32>,
 }
 
 /// Half side of the square that slices cover, in outer radii: the plies and most loops.
 pub(crate) const EXTENT: f64 = 1.25;
 
-/// Optical depths of one slice as [y][x], light at angle `psi`.
+/// Optical depths of one slice as `[y][x]`, light at angle `psi`.
 pub(crate) fn depth_slice(density: &SectionDensity, psi: f64, size: usize) -> Vec<f64> {
     /// Integration steps per texel.
     const STEPS: usize = 4;
@@ -95,7 +95,7 @@ impl SelfShadow {
     }
 }
 
-/// Bilinear lookup in a square table [y][x] over [−extent, extent]², clamped to its border texels.
+/// Bilinear lookup in a square table `[y][x]` over [−extent, extent]², clamped to its border texels.
 pub(crate) fn bilinear<T: Copy + Into<f64>>(table: &[T], size: usize, extent: f64, q: DVec2) -> f64 {
     let texel = ((q / extent * 0.5 + 0.5) * size as f64 - 0.5).clamp(DVec2::ZERO, DVec2::splat((size - 1) as f64));
     let (x, y) = ((texel.x as usize).min(size - 2), (texel.y as usize).min(size - 2));
