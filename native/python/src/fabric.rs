@@ -32,7 +32,7 @@ pub fn knit_flat(
         let knit = Knit::flat(&pattern(stitches)?, courses, wales, yarn_radius)?;
         knit.swatch(&FlatPatch { size_m: knit.size_m() })
     })?;
-    Yarns::of_curves(py, curves, None, "knitted swatch".to_owned())
+    Yarns::at_rest(py, curves, None, None, "knitted swatch".to_owned())
 }
 
 /// A tube of its own radius about the Z axis, standing on z = 0.
@@ -48,11 +48,12 @@ pub fn knit_tube(
         let knit = Knit::round(&pattern(stitches)?, courses, wales, yarn_radius)?;
         knit.swatch(&Tube { radius_m: knit.tube_radius_m(), height_m: knit.size_m().y })
     })?;
-    Yarns::of_curves(py, curves, None, "knitted tube".to_owned())
+    Yarns::at_rest(py, curves, None, None, "knitted tube".to_owned())
 }
 
 /// A tube about a centre line.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "called from one place in the package, by position")]
 pub fn knit_sleeve(
     py: Python<'_>,
     centre_line: Vec<[f64; 3]>,
@@ -68,12 +69,12 @@ pub fn knit_sleeve(
         let sleeve = Sleeve::new(&centre_line, radius, DVec3::from(seam_direction))?;
         Knit::round(&pattern(stitches)?, courses, wales, yarn_radius)?.swatch(&sleeve)
     })?;
-    Yarns::of_curves(py, curves, None, "knitted sleeve".to_owned())
+    Yarns::at_rest(py, curves, None, None, "knitted sleeve".to_owned())
 }
 
 /// A sweater of at most so many control points.
 #[pyfunction]
 pub fn sweater(py: Python<'_>, points: usize) -> Result<Yarns, Failure> {
     let curves = detached(py, || lisle_fabric::sweater(points))?;
-    Yarns::of_curves(py, curves, None, "knitted sweater".to_owned())
+    Yarns::at_rest(py, curves, None, None, "knitted sweater".to_owned())
 }

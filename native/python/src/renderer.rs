@@ -1,5 +1,7 @@
 //! The class `Renderer`.
 
+use std::cell::Cell;
+
 use lisle_gpu::{Image, Statistics};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,6 +11,11 @@ use crate::convert::{array, field_error};
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
 use crate::scene::{LightFields, ObjectFields, Rows, SettingsItems, scene};
+
+thread_local! {
+    /// Whether this thread is in a render: a progress callback that drew again would wait for itself.
+    static DRAWING: Cell<bool> = const { Cell::new(false) };
+}
 
 /// An adapter that draws.
 #[pyclass(module = "lisle._native", frozen)]
@@ -27,6 +34,7 @@ impl Renderer {
     }
 
     /// Passes by name and statistics.
+    #[expect(clippy::too_many_arguments, reason = "called from one place in the package, by position")]
     fn render<'py>(
         &self,
         py: Python<'py>,
@@ -40,12 +48,14 @@ impl Renderer {
         let settings: SettingsItems = settings.extract().map_err(|error| Failure::Input(field_error(py, &error)))?;
         let settings = settings.settings()?;
         let scene = scene(objects, lights, ambient, camera)?;
+        if DRAWING.replace(true) {
+            return Err(Failure::Input("render was called from a progress callback of another render".to_owned()));
+        }
         let mut listener = Listener::new(progress);
         let result = detached(py, || {
-            self.0.render(&scene, &settings, &mut |done| {
-                listener.report(f64::from(done.samples_done) / f64::from(done.samples))
-            })
+            self.0.render(&scene, &settings, &mut |done| listener.report(f64::from(done.done) / f64::from(done.total)))
         });
+        DRAWING.set(false);
         let image = listener.outcome(result)?;
         let statistics = statistics(py, &image.statistics)?;
         Ok((passes(py, image)?, statistics))
@@ -70,8 +80,12 @@ fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'
         milliseconds.set_item(pass, time)?;
     }
     let result = PyDict::new(py);
-    result.set_item("segments_drawn", statistics.segments_drawn)?;
-    result.set_item("passes_ms", milliseconds)?;
+    result.set_item("adapter", &statistics.adapter)?;
+    result.set_item("segments", statistics.segments)?;
+    result.set_item("fiber_segments", statistics.fiber_segments)?;
+    result.set_item("knot_bytes", statistics.knot_bytes)?;
     result.set_item("gpu_bytes", statistics.gpu_bytes)?;
+    result.set_item("uploaded_bytes", statistics.uploaded_bytes)?;
+    result.set_item("passes_ms", milliseconds)?;
     Ok(result)
 }

@@ -41,9 +41,21 @@ struct Arrays {
 
 impl Yarns {
     /// Curves at rest, computed without the GIL.
-    pub fn of_curves(py: Python<'_>, curves: Curves, yarn_radius: Option<f32>, name: String) -> Result<Self, Failure> {
-        let yarns = detached(py, || strands::Yarns::new(curves, yarn_radius)).map_err(|failure| failure.of(&name))?;
-        Ok(Self::of(yarns, name))
+    pub fn at_rest(
+        py: Python<'_>,
+        curves: Curves,
+        yarn_radius: Option<f32>,
+        length_coordinates: Option<Vec<f32>>,
+        name: String,
+    ) -> Result<Self, Failure> {
+        let yarns = detached(py, || {
+            let yarns = strands::Yarns::new(curves, yarn_radius)?;
+            match length_coordinates {
+                None => Ok::<_, lisle_core::Error>(yarns),
+                Some(lengths) => yarns.with_length_coordinates(&lengths),
+            }
+        });
+        Ok(Self::of(yarns.map_err(|failure| failure.of(&name))?, name))
     }
 
     fn of(yarns: strands::Yarns, name: String) -> Self {
@@ -115,18 +127,9 @@ impl Yarns {
         };
         let basis = nurbs.bases(basis, &offsets, points.len()).map_err(of)?;
         let radii = radii.map(|radii| numbers("radii", radii)).transpose().map_err(of)?;
-        let lengths: Option<Vec<f32>> =
+        let lengths =
             length_coordinates.map(|lengths| numbers("length_coordinates", lengths)).transpose().map_err(of)?;
-
-        let curves = Curves { points, offsets, closed, basis, radii };
-        let yarns = detached(py, || {
-            let yarns = strands::Yarns::new(curves, yarn_radius)?;
-            match lengths {
-                None => Ok::<_, lisle_core::Error>(yarns),
-                Some(lengths) => yarns.with_length_coordinates(&lengths),
-            }
-        });
-        Ok(Self::of(yarns.map_err(of)?, name))
+        Self::at_rest(py, Curves { points, offsets, closed, basis, radii }, yarn_radius, lengths, name)
     }
 
     fn with_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> Result<Self, Failure> {
