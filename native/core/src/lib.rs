@@ -3,8 +3,8 @@
 pub mod curve;
 mod error;
 pub mod sampling;
-pub mod strands;
 pub mod scattering;
+pub mod strands;
 pub mod yarn;
 
 pub use curve::{Basis, Curves, KnotMode, Nurbs};

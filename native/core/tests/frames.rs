@@ -3,7 +3,7 @@
 mod support;
 
 use glam::{DQuat, DVec3};
-use lisle_core::{Curves, Yarns};
+use lisle_core::{Basis, Curves, KnotMode, Nurbs, Yarns};
 use support::{Noise, bcc, coiled, knitted, point, sampled, single};
 
 const COUNT: usize = 10_000;
@@ -67,6 +67,28 @@ fn a_moved_point_is_felt_by_its_neighbours_only() {
         }
     }
     assert!(transported_change > 0.1, "the test accepts a transported frame: {transported_change}");
+}
+
+#[test]
+fn control_points_of_every_basis_are_felt_nearby_only() {
+    let nurbs = Basis::Nurbs(Box::new(Nurbs { order: 4, weights: None, knots: KnotMode::Endpoint }));
+    for basis in [Basis::BSpline, Basis::Bezier, Basis::Linear, nurbs] {
+        let points = coiled(1000, 40.0);
+        let rest = yarns(Curves::of_basis(vec![points.clone()], false, basis.clone()), 0.15);
+        let pose: Vec<_> = points.iter().map(|p| [p[0], p[1] + 0.3 * (0.2 * p[0]).sin(), p[2]]).collect();
+        let before = rest.with_points(&pose).expect("same count");
+        for moved in [0, 1, 2, 3, 499, 500, 501, 999] {
+            let mut changed = pose.clone();
+            changed[moved][2] += 0.15;
+            let after = rest.with_points(&changed).expect("same count");
+            let coordinates = rest.length_coordinates();
+            let near = coordinates[moved.saturating_sub(10)]..=coordinates[(moved + 10).min(999)];
+            let far = |k: usize| !near.contains(&(rest.strands().lengths()[k] as f32));
+            let change = largest_change(before.strands().normals(), after.strands().normals(), far);
+            assert!(change < 0.01, "{basis:?}: moving point {moved} changes far normals by {change}");
+            assert!(largest_change(before.strands().normals(), after.strands().normals(), |_| true) > 0.01);
+        }
+    }
 }
 
 #[test]
