@@ -10,6 +10,27 @@ from .material import Material
 from .scene import Object
 from .yarn import Yarn
 
+__all__ = [
+    "Adapter",
+    "Renderer",
+    "Yarns",
+    "__version__",
+    "adapters",
+    "check_material",
+    "check_yarn",
+    "knit_flat",
+    "knit_sleeve",
+    "knit_tube",
+    "load",
+    "material_preset",
+    "material_presets",
+    "save_exr",
+    "save_png",
+    "sweater",
+    "yarn_preset",
+    "yarn_presets",
+]
+
 __version__: str
 
 @final

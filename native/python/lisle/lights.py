@@ -1,6 +1,6 @@
 """Lights, with the conventions of Blender: powers in watts, irradiance of the sun in W/m²."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import pi
 from typing import TypeAlias
 
@@ -114,14 +114,14 @@ class Area:
         size: extents along X and Y, m.
         power: W; its radiance is power / (π area).
         color: scene-linear Rec.709.
-        shape: "rectangle" or "ellipse".
+        shape: "rectangle", or "disk" (an ellipse if the extents differ).
     """
 
     world_from_light: npt.ArrayLike
     size: tuple[float, float] = (1.0, 1.0)
     power: float = 10.0
     color: Vector = WHITE
-    shape: str = field(default="rectangle")
+    shape: str = "rectangle"
 
     def __post_init__(self) -> None:
         matrix = arguments.matrix("Area.world_from_light", self.world_from_light)
@@ -137,8 +137,8 @@ class Area:
         object.__setattr__(self, "size", (x, y))
         object.__setattr__(self, "power", _at_least_zero("Area.power", self.power))
         object.__setattr__(self, "color", arguments.triple("Area.color", self.color))
-        if self.shape not in ("rectangle", "ellipse"):
-            raise InputError(f'Area.shape: {self.shape!r} is neither "rectangle" nor "ellipse"')
+        if self.shape not in ("rectangle", "disk"):
+            raise InputError(f'Area.shape: {self.shape!r} is neither "rectangle" nor "disk"')
 
 
 Light: TypeAlias = Sun | Point | Spot | Area

@@ -120,8 +120,6 @@ class Renderer:
             for name, value in given.items():
                 if value is not None:
                     raise InputError(f"{name}: the scene has its own")
-            if not what.objects:
-                raise InputError("the scene holds no objects")
             return what
         if not isinstance(what, Yarns):
             raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")

@@ -316,27 +316,27 @@ def _curve(points: Floats, radii: _PerCurve | None, basis: str, wrap: str) -> _C
     """One curve of the stage in a basis of ours, exactly: where ours ends an open curve in another way, by the Bézier
     control points of the same segments, or by the phantom points that "pinned" means."""
     closed = wrap == "periodic"
-    at_ends = radii is not None and radii.at_segment_ends
     values = None if radii is None else radii.values
+    ends = radii.values if radii is not None and radii.at_segment_ends else None
     if basis == "linear":
         return _Curve(points, values, closed, LINEAR)
     if basis == "bezier":
-        return _Curve(points, _handles(values, closed) if at_ends else values, closed, BEZIER)
+        return _Curve(points, values if ends is None else _handles(ends, closed), closed, BEZIER)
     if basis == "catmullRom":
         if wrap != "nonperiodic":
             # Segments end at the control points.
             return _Curve(points, values, closed, CATMULL_ROM)
         if values is not None:
-            values = _handles(values, closed) if at_ends else np.maximum(_bezier_of_catmull_rom(values), 0.0)
+            values = np.maximum(_bezier_of_catmull_rom(values), 0.0) if ends is None else _handles(ends, closed)
         return _Curve(_bezier_of_catmull_rom(points), values, closed, BEZIER)
     if wrap == "pinned":
         points = np.vstack([2 * points[0] - points[1], points, 2 * points[-1] - points[-2]])
-        if values is not None and not at_ends:
-            ends = 2 * values[[0, -1]] - values[[1, -2]]
-            values = np.maximum(np.concatenate([ends[:1], values, ends[1:]]), 0.0)
-    if at_ends:
+        if values is not None and ends is None:
+            phantoms = np.maximum(2 * values[[0, -1]] - values[[1, -2]], 0.0)
+            values = np.concatenate([phantoms[:1], values, phantoms[1:]])
+    if ends is not None:
         # They interpolate linearly, which a B-spline's own radii do not.
-        return _Curve(_bezier_of_b_spline(points, closed), _handles(values, closed), closed, BEZIER)
+        return _Curve(_bezier_of_b_spline(points, closed), _handles(ends, closed), closed, BEZIER)
     return _Curve(points, values, closed, B_SPLINE)
 
 

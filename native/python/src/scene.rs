@@ -97,7 +97,7 @@ impl From<LightFields> for Light {
             LightFields::Area { world_from_light, size, power, color, shape } => Self::Area {
                 world_from_light: matrix(world_from_light),
                 size,
-                ellipse: shape == "ellipse",
+                ellipse: shape == "disk",
                 power: power * Vec3::from(color),
             },
         }

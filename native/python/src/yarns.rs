@@ -91,7 +91,7 @@ impl Yarns {
     #[new]
     #[pyo3(signature = (
         points, offsets, closed=None, basis=None, radii=None, *, nurbs_order=None, nurbs_weights=None,
-        nurbs_knots_mode=None, yarn_radius=None, length_coordinates=None, name=String::new(),
+        nurbs_knots_mode=None, yarn_radius=None, length_coordinates=None, name="",
     ))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a constructor in Python")]
     fn new(
@@ -106,9 +106,9 @@ impl Yarns {
         nurbs_knots_mode: Option<&Bound<'_, PyAny>>,
         yarn_radius: Option<f32>,
         length_coordinates: Option<&Bound<'_, PyAny>>,
-        name: String,
+        name: &str,
     ) -> Result<Self, Failure> {
-        let of = |failure: Failure| failure.of(&name);
+        let of = |failure: Failure| failure.of(name);
         let points = vectors("points", points).map_err(of)?;
         let offsets: Vec<u32> = integers("offsets", offsets).map_err(of)?;
         let curves = offsets.len().saturating_sub(1);
@@ -129,7 +129,7 @@ impl Yarns {
         let radii = radii.map(|radii| numbers("radii", radii)).transpose().map_err(of)?;
         let lengths =
             length_coordinates.map(|lengths| numbers("length_coordinates", lengths)).transpose().map_err(of)?;
-        Self::at_rest(py, Curves { points, offsets, closed, basis, radii }, yarn_radius, lengths, name)
+        Self::at_rest(py, Curves { points, offsets, closed, basis, radii }, yarn_radius, lengths, name.to_owned())
     }
 
     fn with_points(&self, py: Python<'_>, points: &Bound<'_, PyAny>) -> Result<Self, Failure> {
