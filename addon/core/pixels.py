@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures as Blender's passes want them."""
 
+import zlib
+
 import numpy as np
 
 
@@ -17,3 +19,21 @@ def pass_rect(image, channels, size):
     if array.shape != expected:
         raise ValueError(f"picture of shape {array.shape} for a pass of shape {expected}")
     return array[::-1].ravel()
+
+
+def stable_id(*identity):
+    """A number from 1 to 2²⁴ − 1 that is the same for the same identity in every process.
+
+    24 bits are what single precision holds exactly, in which pictures carry it.
+    """
+    return zlib.crc32(repr(identity).encode()) & 0xFFFFFF or 1
+
+
+def look_up(ids, values):
+    """The picture `ids` ((h, w) integers) with each id replaced by `values[id]`, others by 0; float32."""
+    known = np.array(sorted(values), dtype=np.int64)
+    if not len(known):
+        return np.zeros(ids.shape, np.float32)
+    of_known = np.array([values[number] for number in known], dtype=np.float32)
+    place = np.minimum(np.searchsorted(known, ids), len(known) - 1)
+    return np.where(known[place] == ids, of_known[place], np.float32(0))

@@ -33,8 +33,8 @@ class LisleRenderEngine(bpy.types.RenderEngine):
         try:
             # Blender cuts the rectangle to the border, exactly as it will use it.
             result = self.begin_result(0, 0, self.resolution_x, self.resolution_y, layer=depsgraph.view_layer.name)
-            image = draw(self, depsgraph, (result.resolution_x, result.resolution_y), notes.append)
-            write_passes(result, image)
+            pictures = draw(self, depsgraph, (result.resolution_x, result.resolution_y), notes.append)
+            write_passes(result, pictures)
         except BaseException as caught:
             error = caught
         if result is not None:

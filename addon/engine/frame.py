@@ -6,6 +6,7 @@ import numpy as np
 from .. import native
 from ..core.camera import border_pixels
 from ..core.errors import Cancelled, LisleError, SceneError
+from ..core.pixels import look_up
 from ..export.camera import native_camera
 from ..export.scene import collect
 from ..export.world import ambient_radiance
@@ -14,7 +15,7 @@ from .renderer import drop, renderer
 
 
 def draw(engine, depsgraph, size, note):
-    """The native image of a view layer, of `size` = (w, h) pixels: the border's size if there is one.
+    """The pictures of a view layer by `Pass.image`, of `size` = (w, h) pixels: the border's size if there is one.
 
     Raises LisleError with a message for the user; Cancelled if the user stopped it.
     """
@@ -33,7 +34,7 @@ def draw(engine, depsgraph, size, note):
 def _draw(lisle, engine, depsgraph, size, note):
     frame_size = engine.resolution_x, engine.resolution_y
     region = _region(depsgraph.scene.render, frame_size, size)
-    scene = _native_scene(lisle, engine, depsgraph, frame_size, note)
+    scene, pass_index_of = _native_scene(lisle, engine, depsgraph, frame_size, note)
     settings, render = depsgraph.scene.lisle, depsgraph.scene.render
 
     def progress(fraction):
@@ -41,18 +42,22 @@ def _draw(lisle, engine, depsgraph, size, note):
         return not engine.test_break()
 
     engine.update_stats("", "Drawing")
-    return renderer(lisle).render(
+    image = renderer(lisle).render(
         scene,
         size=frame_size,
         region=region,
         samples=settings.samples,
         shading=settings.shading,
         occlusion=settings.occlusion,
-        lod=settings.lod,
+        lod_pixels=settings.lod,
         seed=settings.seed,
         transparent=render.film_transparent,
         progress=progress,
     )
+    pictures = {name: image[name] for name in image}
+    if depsgraph.view_layer.use_pass_object_index:
+        pictures["pass_index"] = look_up(image["object_id"], pass_index_of)
+    return pictures
 
 
 def _region(render, frame_size, size):
@@ -67,6 +72,7 @@ def _region(render, frame_size, size):
 
 
 def _native_scene(lisle, engine, depsgraph, frame_size, note):
+    """The lisle.Scene, and Blender's object index by object id."""
     if depsgraph.scene.render.use_multiview:
         raise SceneError("Stereoscopy is not supported: turn it off in the output properties")
     engine.update_stats("", "Reading curves")
@@ -81,17 +87,22 @@ def _native_scene(lisle, engine, depsgraph, frame_size, note):
         ambient=ambient_radiance(depsgraph.scene.world, note),
     )
     parts = {key: _parts(lisle, geometry, at_rest[key]) for key, geometry in content.geometries.items()}
+    pass_index_of = {}
     for placement in content.placements:
+        identity = placement.identity
+        while identity in pass_index_of:  # two of equal hash; their order is stable
+            identity += 1
+        pass_index_of[identity] = placement.pass_index
         for yarns, (yarn, material) in parts[placement.key]:
             scene.add(
                 yarns,
                 yarn=yarn,
                 material=material,
                 transform=placement.world_from_object,
-                object_id=placement.object_id,
+                object_id=identity,
                 name=placement.name,
             )
-    return scene
+    return scene, pass_index_of
 
 
 def _parts(lisle, geometry, at_rest):

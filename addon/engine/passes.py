@@ -18,7 +18,7 @@ class Pass:
     kind: str
     """'COLOR', 'VECTOR' or 'VALUE': the type of the compositor socket."""
     image: str
-    """Its picture in the native image."""
+    """Which picture it shows."""
     setting: str | None = None
     """Path of the view layer's switch; None if the pass is always there."""
 
@@ -35,7 +35,7 @@ PASSES = (
         "Object Index" if bpy.app.version >= (5, 0, 0) else "IndexOB",
         "X",
         "VALUE",
-        "object_id",
+        "pass_index",
         "use_pass_object_index",
     ),
     Pass("Tangent", "XYZ", "VECTOR", "tangent", "lisle.use_pass_tangent"),
@@ -52,12 +52,12 @@ def register_passes(engine, scene, view_layer):
             )
 
 
-def write_passes(result, image):
-    """Writes the native image into all passes of a render result. Raises LookupError for a pass it cannot fill."""
+def write_passes(result, pictures):
+    """Writes pictures by `Pass.image` into a render result. Raises LookupError for a pass it cannot fill."""
     size = result.resolution_x, result.resolution_y
     by_name = {render_pass.name: render_pass for render_pass in PASSES}
     for target in result.layers[0].passes:
         source = by_name.get(target.name)
         if source is None:
             raise LookupError(f"Blender asks for the pass '{target.name}', which Lisle does not have")
-        target.rect.foreach_set(pass_rect(image[source.image], target.channels, size))
+        target.rect.foreach_set(pass_rect(pictures[source.image], target.channels, size))

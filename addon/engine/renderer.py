@@ -9,7 +9,7 @@ def renderer(lisle):
     global _renderer
     if _renderer is None:
         _renderer = lisle.Renderer()
-        print(f"Lisle: drawing on {_renderer.adapter}")
+        print(f"Lisle: drawing on {_renderer.adapter.name}")
     return _renderer
 
 

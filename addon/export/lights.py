@@ -4,11 +4,22 @@
 import numpy as np
 
 from ..core.camera import without_scale
+from ..core.errors import SceneError
 from ..core.lights import area_m2, unnormalized_factor
 
 
 def native_light(lisle, obj, matrix_world, note):
-    """The native light of a light object at `matrix_world`; tells `note` (a callable) what is left out."""
+    """The native light of a light object at `matrix_world`; tells `note` (a callable) what is left out.
+
+    Raises SceneError with the object's name where its settings cannot be drawn.
+    """
+    try:
+        return _native_light(lisle, obj, matrix_world, note)
+    except lisle.InputError as error:
+        raise SceneError(f"light '{obj.name}': {error}") from error
+
+
+def _native_light(lisle, obj, matrix_world, note):
     light = obj.data
     world_from_light = without_scale(matrix_world)
     position, direction = world_from_light[:3, 3], -world_from_light[:3, 2]

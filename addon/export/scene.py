@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..core.curves import CurveArrays
+from ..core.pixels import stable_id
 from .curves import read_curves
 from .legacy import read_legacy
 from .lights import native_light
@@ -38,13 +39,15 @@ class Placement:
     key: tuple
     world_from_object: np.ndarray
     """(4, 4) float64."""
-    object_id: int
-    """Blender's pass index."""
+    identity: int
+    """Tells this placement from others, above 0; the same in every frame and process."""
+    pass_index: int
+    """Blender's object index."""
     name: str
 
     def order(self):
         """Sorts placements the same way in every process."""
-        return self.key, self.world_from_object.tobytes()
+        return self.key, self.identity, self.world_from_object.tobytes()
 
 
 @dataclass
@@ -65,7 +68,7 @@ def collect(lisle, depsgraph, note, only=None):
     """
     content = Content()
     parts_of = {}
-    meshes = 0
+    meshes = set()
     for instance in depsgraph.object_instances:
         obj = instance.object
         if obj.type != obj.original.type:  # a component of some geometry set under its owner's name
@@ -78,9 +81,10 @@ def collect(lisle, depsgraph, note, only=None):
         if only is not None and name not in only:
             continue
         if not _may_have_curves(obj):
-            meshes += obj.type == "MESH"
+            if obj.type == "MESH":
+                meshes.add(name)
             continue
-        if not obj.visible_camera:
+        if only is None and not obj.visible_camera:
             continue
         if obj.is_holdout:
             note(f"object '{obj.name}': holdout is not supported and ignored")
@@ -92,13 +96,18 @@ def collect(lisle, depsgraph, note, only=None):
             for part, _ in parts_of[name]:
                 content.geometries[part.key] = part
         world_from_object = np.array(instance.matrix_world, dtype=np.float64)
+        instancer = (instance.parent.name_full, *instance.persistent_id) if instance.is_instance else ()
         for part, transforms in parts_of[name]:
             if not instance.show_self and len(part.key) == 1:
                 continue
-            for transform in transforms:
-                content.placements.append(Placement(part.key, world_from_object @ transform, obj.pass_index, obj.name))
+            for number, transform in enumerate(transforms):
+                matrix = world_from_object @ transform
+                if np.linalg.det(matrix[:3, :3]) == 0:  # scaled away
+                    continue
+                identity = stable_id(part.key, *instancer, number)
+                content.placements.append(Placement(part.key, matrix, identity, obj.pass_index, obj.name))
     if meshes and only is None:
-        note(f"{meshes} mesh object(s) without curves are not drawn")
+        note(f"mesh objects without curves are not drawn: {', '.join(sorted(meshes)[:5])}")
     content.placements.sort(key=Placement.order)
     return content
 

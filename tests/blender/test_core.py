@@ -14,7 +14,7 @@ from lisle_blender.core.curves import (
     polylines_of_wire,
 )
 from lisle_blender.core.lights import area_m2, unnormalized_factor
-from lisle_blender.core.pixels import pass_rect
+from lisle_blender.core.pixels import look_up, pass_rect, stable_id
 
 
 def arrays(counts, **changes):
@@ -39,7 +39,7 @@ def test_bezier_polygons_run_anchor_handle_handle_anchor():
     is_bezier = np.array([True, False, True])
     points, new_offsets, between = bezier_polygons(anchors, left, right, offsets, closed, is_bezier)
     assert new_offsets.tolist() == [0, 7, 9, 15]
-    assert points[:, 0].tolist() == [0, 1, 9, 10, 11, 19, 20] + [30, 40] + [50, 51, 59, 60, 61, 49]
+    assert points[:, 0].tolist() == [0, 1, 9, 10, 11, 19, 20, 30, 40, 50, 51, 59, 60, 61, 49]
     radii = interpolate(np.array([0, 3, 6, 1, 2, 0, 9], np.float32), between)
     np.testing.assert_allclose(radii, [0, 1, 2, 3, 4, 5, 6, 1, 2, 0, 3, 6, 9, 6, 3], atol=1e-6)
 
@@ -148,3 +148,15 @@ def test_unnormalized_lights_are_what_cycles_makes_of_them():
     assert unnormalized_factor("AREA", area_m2=area_m2((0.1, 0.1), False)) == pytest.approx(cycles["area"], rel=2e-3)
     assert unnormalized_factor("SUN", angle_rad=0.1) == pytest.approx(cycles["sun"], rel=2e-3)
     assert area_m2((2, 3), True) == pytest.approx(1.5 * math.pi)
+
+
+def test_ids_are_looked_up_by_pixel():
+    ids = np.array([[7, 0, 3], [4_000_000_000, 5, 3]], np.uint32)
+    indices = look_up(ids, {3: 30, 7: 70, 4_000_000_000: 40})
+    assert indices.dtype == np.float32 and indices.tolist() == [[70, 0, 30], [40, 0, 30]]
+    assert not look_up(ids, {}).any()
+
+
+def test_stable_ids_are_the_same_in_every_process():
+    assert stable_id(("Yarn",), 3) == 6636771
+    assert stable_id(("Yarn",), 4) != stable_id(("Yarn",), 3)

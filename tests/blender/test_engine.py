@@ -160,7 +160,7 @@ def test_settings_reach_the_renderer(lisle):
     scene.render.resolution_percentage = 50
     bpy.ops.render.render()
     assert lisle.scenes[-1][1] == {
-        "size": (32, 24), "samples": 33, "seed": 5, "lod": 0.5, "shading": "simple", "occlusion": "table",
+        "size": (32, 24), "samples": 33, "seed": 5, "lod_pixels": 0.5, "shading": "simple", "occlusion": "table",
         "region": None, "transparent": True,
     }  # fmt: skip
 

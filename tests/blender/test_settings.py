@@ -240,3 +240,13 @@ def test_world_without_nodes_and_with_unreadable_ones(lisle):
     np.testing.assert_allclose(render(lisle).ambient, (1.5, 0.75, 0.375))
     tree.links.clear()
     assert tuple(render(lisle).ambient) == (0, 0, 0)
+
+
+def test_a_light_that_cannot_be_drawn_is_named(lisle, monkeypatch):
+    def refuse(**_):
+        raise lisle.InputError("Sun.strength: -1 is less than 0")
+
+    monkeypatch.setattr(lisle, "Sun", refuse)
+    light("SUN", energy=-1)
+    with pytest.raises(RuntimeError, match=r"light 'Light': Sun\.strength"):
+        render(lisle)

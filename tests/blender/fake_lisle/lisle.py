@@ -4,6 +4,8 @@ It records what it is given in `scenes` and fails where `fail` says so. A dot's 
 a wrong rest shape shows in the picture.
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 
 scenes = []
@@ -151,6 +153,7 @@ class Area(_Light):
 class Entry:
     def __init__(self, yarns, yarn, material, transform, object_id, name):
         assert transform.shape == (4, 4) and transform.dtype == np.float64
+        assert 0 < object_id < 2**32
         self.yarns, self.yarn, self.material = yarns, yarn, material
         self.transform, self.object_id, self.name = transform, object_id, name
 
@@ -159,12 +162,12 @@ class Scene:
     def __init__(self, camera, lights=(), ambient=(0, 0, 0)):
         self.camera, self.lights, self.ambient, self.entries = camera, list(lights), ambient, []
 
-    def add(self, yarns, *, yarn, material, transform, object_id=0, name=""):
+    def add(self, yarns, *, yarn, material, transform, object_id, name):
         self.entries.append(Entry(yarns, yarn, material, transform, object_id, name))
 
 
 class Renderer:
-    adapter = "a stand-in, no GPU"
+    adapter = SimpleNamespace(name="a stand-in, no GPU")
 
     def render(self, scene, *, size, samples, region, transparent, progress, **settings):
         scenes.append(
@@ -180,7 +183,7 @@ class Renderer:
             "alpha": np.zeros((height, width), np.float32),
             "normal": np.zeros((height, width, 3), np.float32),
             "tangent": np.zeros((height, width, 3), np.float32),
-            "object_id": np.zeros((height, width), np.float32),
+            "object_id": np.zeros((height, width), np.uint32),
         }
         if not transparent:
             image["combined"][:] = (*scene.ambient, 1)
