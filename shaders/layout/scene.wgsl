@@ -20,7 +20,7 @@ struct Frame {
     draw_count: u32,
     // Bits of a visibility key below the depth, and of its parts.
     slot_bits: u32,
-    step_bits: u32,
+    place_bits: u32,
     depth_bits: u32,
     sample_index: u32,
     lod_pixels: f32,

@@ -8,22 +8,29 @@ struct SectionPoint {
     y: vec3f,
 }
 
-fn section_point(yarn: Yarn, s: Segment, p: YarnPoint, position: vec3f) -> SectionPoint {
-    let first = ply_point(yarn, s, p, 0u);
-    let offset = position - p.position;
-    let place = vec2f(dot(offset, first.radial), dot(offset, first.tangential)) / p.radius;
-    return SectionPoint(place, first.radial, first.tangential);
+// In the frame of any of the plies: the section repeats from ply to ply.
+fn section_point(center: vec3f, radius: f32, radial: vec3f, tangential: vec3f, position: vec3f) -> SectionPoint {
+    let offset = position - center;
+    return SectionPoint(vec2f(dot(offset, radial), dot(offset, tangential)) / radius, radial, tangential);
 }
 
-// The point of the tube's surface, or rather how far along `direction` a point must go to leave a tube of that radius.
-fn distance_out_of_tube(offset: vec3f, tangent: vec3f, direction: vec3f, radius: f32) -> f32 {
-    let o = offset - tangent * dot(offset, tangent);
-    let d = direction - tangent * dot(direction, tangent);
+// The yarn as a tube about a point of its centre line.
+struct Tube {
+    center: vec3f,
+    radius: f32,
+    tangent: vec3f,
+}
+
+// How far along `direction` a point must go to leave the tube.
+fn distance_out_of_tube(tube: Tube, position: vec3f, direction: vec3f) -> f32 {
+    let offset = position - tube.center;
+    let o = offset - tube.tangent * dot(offset, tube.tangent);
+    let d = direction - tube.tangent * dot(direction, tube.tangent);
     let a = max(dot(d, d), 1e-4);
     let b = dot(o, d);
-    let discriminant = b * b - a * (dot(o, o) - radius * radius);
+    let discriminant = b * b - a * (dot(o, o) - tube.radius * tube.radius);
     if discriminant <= 0.0 {
         return 0.0;
     }
-    return clamp((sqrt(discriminant) - b) / a, 0.0, 4.0 * radius);
+    return clamp((sqrt(discriminant) - b) / a, 0.0, 4.0 * tube.radius);
 }

@@ -33,8 +33,9 @@ fn line_hit(line: Line, pixel: vec2f) -> LineHit {
     let t = clamp(dot(from_a, line.direction) / line.length_squared, 0.0, 1.0);
     let radius = mix(line.a.radius, line.b.radius, t);
     let distance = length(from_a - t * line.direction);
-    let side = sign(from_a.x * line.direction.y - from_a.y * line.direction.x);
-    return LineHit(distance <= radius && radius > 0.0, t, side * distance / max(radius, 1e-20), radius);
+    // Past an end, the distance from the line drawn on: the next line of a chain takes over without a notch.
+    let across = (from_a.x * line.direction.y - from_a.y * line.direction.x) * inverseSqrt(line.length_squared);
+    return LineHit(distance <= radius && radius > 0.0, t, clamp(across / max(radius, 1e-20), -1.0, 1.0), radius);
 }
 
 // Depth along the line; 1 / depth is linear on the screen under perspective.

@@ -12,9 +12,7 @@ struct CoreEnd {
     depth_v: f32,
 }
 
-fn core_end(yarn: Yarn, s: Segment, ply: u32, t: f32) -> CoreEnd {
-    let p = yarn_point(s, t);
-    let c = core_point(yarn, s, p, ply, frame.viewer);
+fn core_end(c: CorePoint) -> CoreEnd {
     let pixel = to_pixel(frame.pixel_from_render, c.center);
     let view = direction_to_viewer(frame.viewer, c.center);
     let moved = (frame.pixel_from_render * vec4f(c.side, 0.0)).xyz;

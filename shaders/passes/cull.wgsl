@@ -1,8 +1,12 @@
-// How it works: one thread a segment. A segment outside of the view gets no work; otherwise as many items as fibers that
-// its level of detail asks for. A scan over blocks (scan.wgsl) turns the counts into positions, so that the order of work,
+// How it works: one thread a segment. A segment outside of the view gets no work; otherwise as many items as chunks of the
+// fibers that its level of detail asks for. A scan over blocks (scan.wgsl) turns the counts into positions, so that the order of work,
 // and with it everything that follows, depends on geometry alone.
 
+// Dispatch of the visibility pass, and at 5 the number of (segment, fiber) pairs to draw.
+@group(0) @binding(14) var<storage, read_write> dispatch: array<atomic<u32>, 8>;
+
 var<workgroup> sums: array<u32, BLOCK>;
+var<workgroup> fibers: atomic<u32>;
 
 // Whether the sphere hull of a segment's Bézier points lies outside of one border of the region.
 fn outside(plane: vec4f, hull: array<vec3f, 4>, radius: f32) -> bool {
@@ -36,7 +40,10 @@ fn work_of(segment: u32) -> u32 {
         return 0u;
     }
     let ends = detail_ends(yarn, draw, segment);
-    return yarn.plies * max(1u, max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1])));
+    let count = max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1]));
+    atomicAdd(&fibers, yarn.plies * count);
+    // At least one item, by which the core pass knows that the segment is in view.
+    return yarn.plies * max(1u, (count + CHUNK - 1u) / CHUNK);
 }
 
 @compute @workgroup_size(256)
@@ -59,6 +66,9 @@ fn cull(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index
     workgroupBarrier();
     if segment < frame.segment_count {
         segment_work[segment] = sums[local];
+    }
+    if local == BLOCK - 1u {
+        atomicAdd(&dispatch[5], atomicLoad(&fibers));
     }
     if local == BLOCK - 1u && workgroup.y * ROW + workgroup.x < arrayLength(&block_work) {
         block_work[workgroup.y * ROW + workgroup.x] = sums[local];

@@ -1,5 +1,7 @@
-// One step of a fiber as a line on the screen: shared by the visibility pass, which draws it, and the resolve, which finds
-// the pixel on it again.
+// A fiber on the screen.
+
+// Most lines that one fiber of one segment is drawn with.
+const MOST_STEPS: u32 = 128u;
 
 // How many steps a fiber of a segment takes.
 fn fiber_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
@@ -8,7 +10,7 @@ fn fiber_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
     let bend_pixels = 2.0 * bend * radius_pixels / max(per_length, 1e-30);
     let length_share_here = dot(s.length, vec4f(0.0, 1.0, 1.0, 1.0));
     let turning = TAU * length_share_here * (abs(yarn.ply_sign * s.turns.x + yarn.fiber_sign * s.turns.y) + s.turns.x);
-    return step_count(bend_pixels, turning, 0.7, radius_pixels, (1u << frame.step_bits) - 1u);
+    return step_count(bend_pixels, turning, 0.7, radius_pixels, MOST_STEPS);
 }
 
 fn core_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
@@ -27,15 +29,15 @@ fn segment_radius_pixels(s: Segment) -> f32 {
 
 struct FiberEnd {
     line: LineEnd,
-    fiber: FiberPoint,
-    visible: bool,
+    piece: u32,
+    period: u32,
 }
 
-fn fiber_end(yarn: Yarn, s: Segment, ends: array<Detail, 2>, ply: u32, fiber: Fiber, t: f32) -> FiberEnd {
-    let p = yarn_point(s, t);
-    let f = fiber_point(yarn, s, p, ply, fiber);
-    let width = width_factor(yarn, mix_detail(ends, t), fiber.index, f);
+fn fiber_end(yarn: Yarn, s: Segment, detail: Detail, p: YarnPoint, q: PlyPoint, fiber: Fiber) -> FiberEnd {
+    let f = fiber_point(yarn, s, p, q, fiber);
+    let width = width_factor(yarn, detail, fiber.index, f);
     let pixel = to_pixel(frame.pixel_from_render, f.position);
-    let radius = radius_in_pixels(yarn.fiber_radius * p.radius * width, pixel.z);
-    return FiberEnd(LineEnd(pixel.xy, pixel.w, radius), f, pixel.w > frame.near);
+    // A point behind the near plane has no width.
+    let radius = select(0.0, radius_in_pixels(yarn.fiber_radius * p.radius * width, pixel.z), pixel.w > frame.near);
+    return FiberEnd(LineEnd(pixel.xy, pixel.w, radius), f.piece, f.period);
 }

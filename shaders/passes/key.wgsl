@@ -1,4 +1,5 @@
-// Visibility keys: depth in the upper bits, then segment, slot (fiber or core of a ply) and step along the segment.
+// Visibility keys: depth in the upper bits, then segment, slot (fiber or core of a ply) and place along the segment:
+// a fiber's parameter t in steps of 1 / (2^place_bits - 1), a core's step.
 // The largest key wins; ids come from the geometry, so the winner does not depend on the order of work.
 
 struct Key {
@@ -9,25 +10,30 @@ struct Key {
 struct KeyParts {
     segment: u32,
     slot: u32,
-    step: u32,
+    place: u32,
 }
 
-fn make_key(depth: f32, segment: u32, slot: u32, step: u32) -> Key {
+fn make_key(depth: f32, segment: u32, slot: u32, place: u32) -> Key {
     let near_is_large = clamp(1.0 - (depth - frame.depth_min) * frame.depth_scale, 0.0, 1.0);
     // Never 0, which marks an empty pixel; in f32 only 24 bits of depth are significant.
     let code = max(u32(near_is_large * exp2(f32(frame.depth_bits)) * 0.99999994), 1u);
-    let inner_bits = frame.slot_bits + frame.step_bits;
-    let low = (segment << inner_bits) | (slot << frame.step_bits) | step;
+    let inner_bits = frame.slot_bits + frame.place_bits;
+    let low = (segment << inner_bits) | (slot << frame.place_bits) | place;
     let high = (code << (32u - frame.depth_bits)) | (segment >> (32u - inner_bits));
     return Key(high, low);
 }
 
 fn key_parts(key: Key) -> KeyParts {
-    let inner_bits = frame.slot_bits + frame.step_bits;
+    let inner_bits = frame.slot_bits + frame.place_bits;
     let id_high = key.high & ((1u << (32u - frame.depth_bits)) - 1u);
     return KeyParts(
         (id_high << (32u - inner_bits)) | (key.low >> inner_bits),
-        (key.low >> frame.step_bits) & ((1u << frame.slot_bits) - 1u),
-        key.low & ((1u << frame.step_bits) - 1u),
+        (key.low >> frame.place_bits) & ((1u << frame.slot_bits) - 1u),
+        key.low & ((1u << frame.place_bits) - 1u),
     );
+}
+
+// Steps of a fiber's place along its segment.
+fn place_scale() -> f32 {
+    return f32((1u << frame.place_bits) - 1u);
 }

@@ -82,17 +82,17 @@ fn self_occlusion(yarn: Yarn, section: SectionPoint) -> f32 {
     return clamp(k.x + (k.y + (k.z + k.w * r) * r) * r, 0.0, 1.0);
 }
 
-// Side of the shadow filter, texels: two more than the taps weighted in full.
-const FILTER: i32 = 4;
+// Side of the shadow filter, texels: its outermost taps are weighted by the share of the texel that it covers.
+const FILTER: i32 = 3;
 
 // Share of a light that other yarns let through, filtered over the shadow map's texels.
 fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> f32 {
     let view = shadow_views[view_index];
     let texel = to_pixel(view.texel_from_render, position);
     let nearness = 1.0 - (texel.w - bias - view.depth_min) * view.depth_scale;
-    let corner = floor(texel.xy - 0.5);
-    let share = texel.xy - 0.5 - corner;
-    let first = vec2i(corner) - (FILTER / 2 - 1);
+    let corner = floor(texel.xy - 0.5 * f32(FILTER - 1));
+    let share = texel.xy - 0.5 * f32(FILTER - 1) - corner;
+    let first = vec2i(corner);
     let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
     var lit = 0.0;
     for (var y = 0; y < FILTER; y++) {
@@ -126,23 +126,23 @@ fn cube_face(direction: vec3f) -> u32 {
 // A yarn's own tube must not shade it: its fibers do that in self_shadow. The point is moved out of the tube first.
 const SHADOW_BIAS: f32 = 0.5;
 
-fn light_shadow(light: Light, incident: Incident, p: YarnPoint, position: vec3f) -> f32 {
+fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -> f32 {
     if light.shadow_view_count == 0u {
         return 1.0;
     }
-    let way_out = distance_out_of_tube(position - p.position, p.tangent, incident.direction, p.radius);
+    let way_out = distance_out_of_tube(tube, position, incident.direction);
     let outside = position + incident.direction * way_out;
     var view = light.shadow_view;
     if light.shadow_view_count == 6u {
         view += cube_face(outside - light.position);
     }
-    return shadow_map(view, outside, SHADOW_BIAS * p.radius);
+    return shadow_map(view, outside, SHADOW_BIAS * tube.radius);
 }
 
-fn sky_shadow(p: YarnPoint, position: vec3f) -> f32 {
+fn sky_shadow(tube: Tube, position: vec3f) -> f32 {
     if frame.sky_shadow_view == NO_VIEW {
         return 1.0;
     }
-    let way_out = distance_out_of_tube(position - p.position, p.tangent, frame.sky_direction, p.radius);
-    return shadow_map(frame.sky_shadow_view, position + frame.sky_direction * way_out, SHADOW_BIAS * p.radius);
+    let way_out = distance_out_of_tube(tube, position, frame.sky_direction);
+    return shadow_map(frame.sky_shadow_view, position + frame.sky_direction * way_out, SHADOW_BIAS * tube.radius);
 }

@@ -10,8 +10,10 @@
 @group(0) @binding(19) var<storage, read_write> film_tangent: array<vec4f>;
 
 struct Surface {
-    draw: u32,
-    point: YarnPoint,
+    tube: Tube,
+    // Section axes of the fiber's ply.
+    radial: vec3f,
+    tangential: vec3f,
     position: vec3f,
     tangent: vec3f,
     normal: vec3f,
@@ -26,75 +28,82 @@ fn fiber_normal(tangent: vec3f, side: vec3f, view: vec3f, offset: f32) -> vec3f 
     return normalize(right * x + forward * sqrt(max(1.0 - x * x, 0.0)));
 }
 
-fn fiber_surface(draw: u32, s: Segment, yarn: Yarn, ends: array<Detail, 2>, ply: u32, index: u32, step: u32, pixel: vec2f) -> Surface {
-    let fiber = fiber_at(yarn, s.seed, ply, index);
-    let steps = fiber_steps(yarn, s, segment_radius_pixels(s));
-    let t0 = f32(step - 1u) / f32(steps);
-    let t1 = f32(step) / f32(steps);
-    let a = fiber_end(yarn, s, ends, ply, fiber, t0);
-    let b = fiber_end(yarn, s, ends, ply, fiber, t1);
-    let line = make_line(a.line, b.line);
-    let hit = line_hit(line, pixel);
-    // Equal steps on the screen are not equal steps in depth.
-    let wa = select(1.0 / a.line.depth, 1.0, frame.viewer.w > 0.5);
-    let wb = select(1.0 / b.line.depth, 1.0, frame.viewer.w > 0.5);
-    let t = mix(t0, t1, hit.t * wb / mix(wa, wb, hit.t));
+fn fiber_surface(s: Segment, yarn: Yarn, ends: array<Detail, 2>, ply: u32, index: u32, place: u32, pixel: vec2f) -> Surface {
+    let t = f32(place) / place_scale();
     let p = yarn_point(s, t);
-    let f = fiber_point(yarn, s, p, ply, fiber);
+    let q = ply_point(yarn, s, p, ply);
+    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, s.seed, ply, index));
+    let width = width_factor(yarn, mix_detail(ends, t), index, f);
+    let at = to_pixel(frame.pixel_from_render, f.position);
+    // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.
+    let moved = (frame.pixel_from_render * vec4f(f.velocity, 0.0)).xyz;
+    let on_screen = (moved.xy - at.xy * moved.z) / at.z;
+    let speed = max(length(on_screen), 1e-20);
+    let to_pixel_center = pixel - at.xy;
+    let rest = clamp(dot(to_pixel_center, on_screen) / (speed * speed), -1.0 / place_scale(), 1.0 / place_scale());
+    let across = (to_pixel_center.x * on_screen.y - to_pixel_center.y * on_screen.x) / speed;
+    let offset = across / max(radius_in_pixels(yarn.fiber_radius * p.radius * width, at.z), 1e-20);
+    let center = f.position + f.velocity * rest;
     let tangent = normalize(f.velocity);
-    let view = direction_to_viewer(frame.viewer, f.position);
-    // Screen direction in which the offset grows, brought back to render space by its projection.
-    let across = cross(tangent, view);
-    let moved = (frame.pixel_from_render * vec4f(across, 0.0)).xyz;
-    let on_screen = moved.xy - pixel * moved.z;
-    let grows = vec2f(line.direction.y, -line.direction.x);
-    let side = across * select(-1.0, 1.0, dot(on_screen, grows) >= 0.0);
-    let normal = fiber_normal(tangent, side, view, hit.offset);
-    return Surface(draw, p, f.position + normal * (yarn.fiber_radius * p.radius), tangent, normal);
+    let view = direction_to_viewer(frame.viewer, center);
+    // Render-space direction that the offset grows in: (y, -x) of the fiber's direction on the screen.
+    let side = cross(tangent, view);
+    let side_on_screen = frame.pixel_from_render * vec4f(side, 0.0);
+    let grows = dot(side_on_screen.xy - at.xy * side_on_screen.z, vec2f(on_screen.y, -on_screen.x)) >= 0.0;
+    let normal = fiber_normal(tangent, side * select(-1.0, 1.0, grows), view, offset);
+    let position = center + normal * (yarn.fiber_radius * p.radius);
+    return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, position, tangent, normal);
 }
 
-fn core_surface(draw: u32, s: Segment, yarn: Yarn, ends: array<Detail, 2>, ply: u32, step: u32, pixel: vec2u) -> Surface {
+fn core_surface(s: Segment, yarn: Yarn, ends: array<Detail, 2>, ply: u32, step: u32, pixel: vec2u) -> Surface {
     let steps = core_steps(yarn, s, segment_radius_pixels(s));
     let t0 = f32(step - 1u) / f32(steps);
     let t1 = f32(step) / f32(steps);
-    let a = core_end(yarn, s, ply, t0);
-    let b = core_end(yarn, s, ply, t1);
-    let hit = core_hit(a, b, vec2f(pixel) + 0.5);
-    let t = mix(t0, t1, hit.t);
-    let p = yarn_point(s, t);
-    let c = core_point(yarn, s, p, ply, frame.viewer);
-    let layer = core_layer(yarn, mix_detail(ends, t).fibers, core_chance(pixel));
+    let pa = yarn_point(s, t0);
+    let pb = yarn_point(s, t1);
+    let ca = core_point(yarn, s, pa, ply, frame.viewer);
+    let cb = core_point(yarn, s, pb, ply, frame.viewer);
+    let hit = core_hit(core_end(ca), core_end(cb), vec2f(pixel) + 0.5);
+    // Steps are short: in between, everything is as good as linear.
+    let layer = core_layer(yarn, mix_detail(ends, mix(t0, t1, hit.t)).fibers, core_chance(pixel));
     let texel = core_texel(yarn, layer, hit.turns, hit.v);
     let height = tables[texel];
-    let offset = c.toward * height + c.across * hit.v;
-    let winding = (c.toward * tables[texel + 2u] + c.across * tables[texel + 3u]) * c.fiber_rate;
-    let turning = c.ply.radial_rate * dot(offset, c.ply.radial) + c.ply.tangential_rate * dot(offset, c.ply.tangential);
-    let tangent = normalize(c.velocity + turning + winding);
-    let view = direction_to_viewer(frame.viewer, c.center);
-    let normal = fiber_normal(tangent, c.side, view, tables[texel + 1u]);
-    return Surface(draw, p, c.center + offset, tangent, normal);
+    let toward = mix(ca.toward, cb.toward, hit.t);
+    let across = mix(ca.across, cb.across, hit.t);
+    let radial = normalize(mix(ca.ply.radial, cb.ply.radial, hit.t));
+    let tangential = normalize(mix(ca.ply.tangential, cb.ply.tangential, hit.t));
+    let offset = toward * height + across * hit.v;
+    let winding = (toward * tables[texel + 2u] + across * tables[texel + 3u]) * mix(ca.fiber_rate, cb.fiber_rate, hit.t);
+    let turning = mix(ca.ply.radial_rate, cb.ply.radial_rate, hit.t) * dot(offset, radial)
+        + mix(ca.ply.tangential_rate, cb.ply.tangential_rate, hit.t) * dot(offset, tangential);
+    let tangent = normalize(mix(ca.velocity, cb.velocity, hit.t) + turning + winding);
+    let center = mix(ca.center, cb.center, hit.t);
+    let view = direction_to_viewer(frame.viewer, center);
+    let normal = fiber_normal(tangent, mix(ca.side, cb.side, hit.t), view, tables[texel + 1u]);
+    let tube = Tube(
+        mix(pa.position, pb.position, hit.t),
+        mix(pa.radius, pb.radius, hit.t),
+        normalize(mix(pa.tangent, pb.tangent, hit.t)),
+    );
+    return Surface(tube, radial, tangential, center + offset, tangent, normal);
 }
 
-fn surface_at(key: Key, pixel: vec2u) -> Surface {
-    let parts = key_parts(key);
-    let draw = find_draw(parts.segment);
+fn surface_at(draw: u32, s: Segment, parts: KeyParts, pixel: vec2u) -> Surface {
     let yarn = yarns[draws[draw].yarn];
-    let s = segment_at(draw, parts.segment);
     let ends = detail_ends(yarn, draw, parts.segment);
     let ply = parts.slot / (yarn.fibers + 1u);
     let slot = parts.slot % (yarn.fibers + 1u);
     if slot == 0u {
-        return core_surface(draw, s, yarn, ends, ply, parts.step, pixel);
+        return core_surface(s, yarn, ends, ply, parts.place, pixel);
     }
-    return fiber_surface(draw, s, yarn, ends, ply, slot - 1u, parts.step, vec2f(pixel) + 0.5);
+    return fiber_surface(s, yarn, ends, ply, slot - 1u, parts.place, vec2f(pixel) + 0.5);
 }
 
-fn shade(surface: Surface, s: Segment) -> vec3f {
-    let draw = surface.draw;
+fn shade(draw: u32, surface: Surface) -> vec3f {
     let yarn = yarns[draws[draw].yarn];
     let material = materials[draws[draw].material];
     let view = direction_to_viewer(frame.viewer, surface.position);
-    let section = section_point(yarn, s, surface.point, surface.position);
+    let section = section_point(surface.tube.center, surface.tube.radius, surface.radial, surface.tangential, surface.position);
     var radiance = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i++) {
         let light = lights[i];
@@ -102,7 +111,7 @@ fn shade(surface: Surface, s: Segment) -> vec3f {
         if all(incident.irradiance <= vec3f(0.0)) {
             continue;
         }
-        let open = self_shadow(yarn, section, incident.direction) * light_shadow(light, incident, surface.point, surface.position);
+        let open = self_shadow(yarn, section, incident.direction) * light_shadow(light, incident, surface.tube, surface.position);
         let angles = fiber_angles(surface.tangent, incident.direction, view);
         let cos_normal = dot(surface.normal, incident.direction);
         var reflected: vec3f;
@@ -120,7 +129,7 @@ fn shade(surface: Surface, s: Segment) -> vec3f {
     } else {
         ambient = simple_ambient(material, sin_theta_o);
     }
-    return radiance + ambient * frame.ambient * self_occlusion(yarn, section) * sky_shadow(surface.point, surface.position);
+    return radiance + ambient * frame.ambient * self_occlusion(yarn, section) * sky_shadow(surface.tube, surface.position);
 }
 
 @compute @workgroup_size(8, 8)
@@ -136,14 +145,16 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
     var tangent = vec4f(0.0);
     if words.y != 0u {
         let key = Key(words.y, words.x);
-        let surface = surface_at(key, id.xy);
-        let s = segment_at(surface.draw, key_parts(key).segment);
-        color = vec4f(shade(surface, s), 1.0);
+        let parts = key_parts(key);
+        let draw = find_draw(parts.segment);
+        let s = segment_at(draw, parts.segment);
+        let surface = surface_at(draw, s, parts, id.xy);
+        color = vec4f(shade(draw, surface), 1.0);
         normal = vec4f(surface.normal, 0.0);
         tangent = vec4f(surface.tangent, 0.0);
         if first {
             normal.w = to_pixel(frame.pixel_from_render, surface.position).w;
-            tangent.w = f32(draws[surface.draw].object_id);
+            tangent.w = f32(draws[draw].object_id);
         }
     } else if first {
         normal.w = 1e10;

@@ -47,10 +47,10 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
     let s = segment_at(draw, segment);
     let steps = core_steps(yarn, s, segment_radius_pixels(s));
     for (var ply = 0u; ply < yarn.plies; ply++) {
-        var previous = core_end(yarn, s, ply, 0.0);
+        var previous = core_end(core_point(yarn, s, yarn_point(s, 0.0), ply, frame.viewer));
         for (var step = 1u; step <= steps; step++) {
             let t = f32(step) / f32(steps);
-            let next = core_end(yarn, s, ply, t);
+            let next = core_end(core_point(yarn, s, yarn_point(s, t), ply, frame.viewer));
             if min(previous.depth, next.depth) > frame.near {
                 let t0 = f32(step - 1u) / f32(steps);
                 draw_core(yarn, ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);

@@ -1,9 +1,9 @@
-// How it works: one thread draws one fiber of one segment, as a chain of round-ended lines rasterised in software; each
+// How it works: one thread draws a chunk of one ply's fibers along one segment, each as a chain of round-ended lines rasterised in software; each
 // covered pixel keeps the largest key, that is the nearest fiber.
 
 @group(0) @binding(14) var<storage, read> dispatch: array<u32, 8>;
 
-fn draw_line(line: Line, segment: u32, slot: u32, step: u32) {
+fn draw_line(line: Line, segment: u32, slot: u32, t0: f32, t1: f32) {
     let orthographic = frame.viewer.w > 0.5;
     let walk = line_walk(line, vec2f(frame.size));
     for (var i = walk.first; i <= walk.last; i++) {
@@ -13,10 +13,13 @@ fn draw_line(line: Line, segment: u32, slot: u32, step: u32) {
             let hit = line_hit(line, vec2f(pixel) + 0.5);
             if hit.covered {
                 let depth = line_depth(line, hit.t, orthographic);
+                // Equal steps on the screen are not equal steps in depth.
+                let share = select(hit.t * depth / line.b.depth, hit.t, orthographic);
+                let place = u32(mix(t0, t1, share) * place_scale() + 0.5);
                 // The fiber is round: its surface is nearer than its centre line.
                 let w = select(depth, 1.0, orthographic);
                 let bulge = sqrt(max(1.0 - hit.offset * hit.offset, 0.0)) * hit.radius * w / frame.pixels_per_unit;
-                store_key(u32(pixel.y) * frame.size.x + u32(pixel.x), make_key(depth - bulge, segment, slot, step));
+                store_key(u32(pixel.y) * frame.size.x + u32(pixel.x), make_key(depth - bulge, segment, slot, place));
             }
         }
     }
@@ -61,21 +64,31 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let draw = find_draw(segment);
     let yarn = yarns[draws[draw].yarn];
     let ply = found.y % yarn.plies;
-    let index = found.y / yarn.plies;
+    let first = found.y / yarn.plies * CHUNK;
     let ends = detail_ends(yarn, draw, segment);
-    if index >= max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1])) {
+    let count = max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1]));
+    if first >= count {
         return;
     }
+    let last = min(first + CHUNK, count);
     let s = segment_at(draw, segment);
-    let fiber = fiber_at(yarn, s.seed, ply, index);
     let steps = fiber_steps(yarn, s, segment_radius_pixels(s));
-    let slot = ply * (yarn.fibers + 1u) + 1u + index;
-    var previous = fiber_end(yarn, s, ends, ply, fiber, 0.0);
-    for (var step = 1u; step <= steps; step++) {
-        let next = fiber_end(yarn, s, ends, ply, fiber, f32(step) / f32(steps));
-        if previous.visible && next.visible && joined(previous.fiber, next.fiber) && max(previous.line.radius, next.line.radius) > 0.0 {
-            draw_line(make_line(previous.line, next.line), segment, slot, step);
+    let first_slot = ply * (yarn.fibers + 1u) + 1u;
+    var previous: array<FiberEnd, CHUNK>;
+    for (var step = 0u; step <= steps; step++) {
+        let t = f32(step) / f32(steps);
+        let before = f32(step) / f32(steps) - 1.0 / f32(steps);
+        let p = yarn_point(s, t);
+        let q = ply_point(yarn, s, p, ply);
+        let detail = mix_detail(ends, t);
+        for (var index = first; index < last; index++) {
+            let a = previous[index - first];
+            let b = fiber_end(yarn, s, detail, p, q, fiber_at(yarn, s.seed, ply, index));
+            previous[index - first] = b;
+            if step > 0u && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
+                && joined(a.piece, a.period, b.piece, b.period) {
+                draw_line(make_line(a.line, b.line), segment, first_slot + index, before, t);
+            }
         }
-        previous = next;
     }
 }

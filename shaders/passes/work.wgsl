@@ -4,6 +4,8 @@
 
 // Segments whose work is summed up together.
 const BLOCK: u32 = 256u;
+// Fibers of a ply that one thread draws: they share the yarn's and the ply's frame.
+const CHUNK: u32 = 8u;
 // Threads of one workgroup of the visibility pass.
 const LANES: u32 = 64u;
 // Workgroups in one row of a folded dispatch; a device takes at most 65535.

@@ -118,8 +118,7 @@ struct FiberPoint {
     period: u32,
 }
 
-fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, fiber: Fiber) -> FiberPoint {
-    let q = ply_point(yarn, s, p, ply);
+fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, q: PlyPoint, fiber: Fiber) -> FiberPoint {
     let position_in_migration = s.phase + p.length * s.turns.z + fiber.migration_turns;
     let whole = floor(position_in_migration);
     var period = s.period + u32(whole);
@@ -149,8 +148,8 @@ fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, fiber: Fiber) -> 
     return f;
 }
 
-// Whether a line may join two points of a fiber: not across a hair's tip.
-fn joined(a: FiberPoint, b: FiberPoint) -> bool {
-    let across_tip = (a.piece == PIECE_BEYOND) != (b.piece == PIECE_BEYOND);
-    return !(across_tip && a.period == b.period);
+// Whether a line may join two points of a fiber, by their pieces and periods: not across a hair's tip.
+fn joined(piece_a: u32, period_a: u32, piece_b: u32, period_b: u32) -> bool {
+    let across_tip = (piece_a == PIECE_BEYOND) != (piece_b == PIECE_BEYOND);
+    return !(across_tip && period_a == period_b);
 }

@@ -23,8 +23,8 @@ const ROW: u32 = 32768;
 /// Most pixels of a tile.
 const TILE_PIXELS: u64 = 1 << 22;
 
-/// Bits for the steps along a segment, and for depth.
-const STEP_BITS: u32 = 7;
+/// Bits of a visibility key for the place along a segment, and for depth.
+const PLACE_BITS: u32 = 10;
 const DEPTH_BITS: std::ops::RangeInclusive<u32> = 18..=24;
 
 /// Everything a picture is made of.
@@ -183,7 +183,7 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, Error> {
         let FrameInput { scene, settings, view, draws, .. } = input;
         let slot_bits = bits_for(draws.most_slots);
-        let depth_bits = (64 - STEP_BITS - slot_bits - bits_for(draws.segment_count)).min(*DEPTH_BITS.end());
+        let depth_bits = (64 - PLACE_BITS - slot_bits - bits_for(draws.segment_count)).min(*DEPTH_BITS.end());
         if depth_bits < *DEPTH_BITS.start() {
             return Err(Error::input(
                 "scene",
@@ -210,7 +210,7 @@ impl<'a> Recorder<'a> {
                 segment_count: draws.segment_count,
                 draw_count: draws.items.len() as u32,
                 slot_bits,
-                step_bits: STEP_BITS,
+                place_bits: PLACE_BITS,
                 depth_bits,
                 lod_pixels: settings.lod_pixels,
                 light_count: scene.lights.len() as u32,
@@ -368,6 +368,7 @@ impl<'a> Recorder<'a> {
         if self.uniform.segment_count > 0 {
             if first {
                 let (x, y) = fold(self.uniform.segment_count.div_ceil(BLOCK));
+                encoder.clear_buffer(&self.frame.dispatch, 0, None);
                 self.record(&mut encoder, Pass::Cull, |pass| pass.dispatch_workgroups(x, y, 1));
                 self.record(&mut encoder, Pass::Scan, |pass| pass.dispatch_workgroups(1, 1, 1));
             }
@@ -393,9 +394,9 @@ impl<'a> Recorder<'a> {
         pass: Pass,
         dispatch: impl FnOnce(&mut wgpu::ComputePass),
     ) {
-        let bindings = self.bindings();
+        let (bindings, gpu, pipelines) = (self.bindings(), self.gpu, self.pipelines);
         let timestamps = self.timer.begin(pass.entry_point());
-        self.pipelines.record(self.gpu, encoder, pass, &bindings, timestamps, dispatch);
+        pipelines.record(gpu, encoder, pass, &bindings, timestamps, dispatch);
     }
 
     /// Bytes of a buffer, copied through the staging buffer.
@@ -423,7 +424,7 @@ impl<'a> Recorder<'a> {
         if words[4] != 0 {
             return Err(Error::input("scene", "more than 4.29 billion fiber segments are visible in one picture"));
         }
-        self.fiber_segments += u64::from(words[3]);
+        self.fiber_segments += u64::from(words[5]);
         Ok(())
     }
 

@@ -43,7 +43,7 @@ shared! {
         segment_count: u32,
         draw_count: u32,
         slot_bits: u32,
-        step_bits: u32,
+        place_bits: u32,
         depth_bits: u32,
         sample_index: u32,
         lod_pixels: f32,

@@ -70,9 +70,9 @@ impl LightSample {
         sample
     }
 
-    /// A further view from the sky; its number.
+    /// A further view from the sky, on a quarter of its map: one of many directions needs no sharp shadow; its number.
     pub fn add_sky(&mut self, toward: DVec3, bounds: &Bounds, resolution: u32) -> u32 {
-        self.views.push(parallel_view(toward, bounds, f64::from(resolution)));
+        self.views.push(parallel_view(toward, bounds, f64::from(resolution / 2)));
         self.views.len() as u32 - 1
     }
 

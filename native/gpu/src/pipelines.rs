@@ -39,7 +39,7 @@ impl Pipelines {
                 module: &module,
                 entry_point: Some(pass.entry_point()),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    zero_initialize_workgroup_memory: pass == Pass::Scan,
+                    zero_initialize_workgroup_memory: matches!(pass, Pass::Cull | Pass::Scan),
                     ..Default::default()
                 },
                 cache: None,

@@ -60,6 +60,7 @@ pub enum Pass {
 }
 
 impl Pass {
+    #[cfg(test)]
     pub const ALL: [Self; 10] = [
         Self::Cull,
         Self::Scan,
@@ -125,12 +126,17 @@ impl Pass {
             .filter(|(handle, _)| !entry[*handle].is_empty())
             .filter_map(|(_, variable)| variable.binding.map(|b| b.binding))
             .collect();
-        Ok(Reflection { module, bindings })
+        Ok(Reflection {
+            #[cfg(test)]
+            module,
+            bindings,
+        })
     }
 }
 
 /// What naga finds in a pass.
 pub struct Reflection {
+    #[cfg(test)]
     pub module: naga::Module,
     /// Binding numbers of group 0 that the entry point uses.
     pub bindings: Vec<u32>,
