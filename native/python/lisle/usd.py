@@ -246,7 +246,9 @@ def _curves(where: str, prim: Any, time: Any, world_from_prim: Floats) -> list[_
         raise InputError(f"{where}: curveVertexCounts sum up to {counts.sum()}, but there are {len(points)} points")
     for curve, count in enumerate(counts):
         _check_count(f"{where}: curve {curve}", int(count), basis, wrap)
-    points = points @ world_from_prim[:3, :3].T + world_from_prim[:3, 3]
+    with np.errstate(invalid="ignore"):
+        # Infinite coordinates are for `Yarns` to refuse: it names them.
+        points = points @ world_from_prim[:3, :3].T + world_from_prim[:3, 3]
     scale = abs(np.linalg.det(world_from_prim[:3, :3])) ** (1 / 3)
     widths = _widths(where, schema, time, basis, wrap, counts)
 
@@ -332,8 +334,9 @@ def _curve(points: Floats, radii: _PerCurve | None, basis: str, wrap: str) -> _C
     if wrap == "pinned":
         points = np.vstack([2 * points[0] - points[1], points, 2 * points[-1] - points[-2]])
         if values is not None and ends is None:
-            phantoms = np.maximum(2 * values[[0, -1]] - values[[1, -2]], 0.0)
-            values = np.concatenate([phantoms[:1], values, phantoms[1:]])
+            values = np.concatenate([2 * values[:1] - values[1:2], values, 2 * values[-1:] - values[-2:-1]])
+            # A phantom's radius may be negative where those of the curve are not.
+            return _Curve(_bezier_of_b_spline(points, closed), _bezier_of_b_spline(values, closed), closed, BEZIER)
     if ends is not None:
         # They interpolate linearly, which a B-spline's own radii do not.
         return _Curve(_bezier_of_b_spline(points, closed), _handles(ends, closed), closed, BEZIER)
@@ -355,11 +358,11 @@ def _bezier_of_catmull_rom(values: Floats) -> Floats:
     return np.concatenate([np.stack(inner, axis=1).reshape(-1, *values.shape[1:]), values[-2:-1]])
 
 
-def _bezier_of_b_spline(points: Floats, closed: bool) -> Floats:
-    """Bézier control points of a uniform cubic B-spline."""
+def _bezier_of_b_spline(values: Floats, closed: bool) -> Floats:
+    """Bézier control values of a uniform cubic B-spline."""
     if closed:
-        points = np.vstack([points[-1], points, points[0], points[1]])
-    before, start, end = points[:-3], points[1:-2], points[2:-1]
+        values = np.concatenate([values[-1:], values, values[:2]])
+    before, start, end = values[:-3], values[1:-2], values[2:-1]
     inner = [(before + 4 * start + end) / 6, (2 * start + end) / 3, (start + 2 * end) / 3]
-    result = np.stack(inner, axis=1).reshape(-1, 3)
-    return result if closed else np.vstack([result, (points[-3] + 4 * points[-2] + points[-1]) / 6])
+    result = np.stack(inner, axis=1).reshape(-1, *values.shape[1:])
+    return result if closed else np.concatenate([result, (values[-3:-2] + 4 * values[-2:-1] + values[-1:]) / 6])

@@ -7,6 +7,7 @@ mod exceptions {
     #![allow(missing_docs)]
     pyo3::import_exception!(lisle.errors, Cancelled);
     pyo3::import_exception!(lisle.errors, DeviceError);
+    pyo3::import_exception!(lisle.errors, Error);
     pyo3::import_exception!(lisle.errors, InputError);
 }
 
@@ -20,6 +21,8 @@ pub enum Failure {
     Cancelled(String),
     /// A file could not be read or written.
     File(String),
+    /// A fault of ours.
+    Internal(String),
     /// An exception of Python's, to go on as it is.
     Python(PyErr),
 }
@@ -41,6 +44,7 @@ impl From<Failure> for PyErr {
             Failure::Device(message) => exceptions::DeviceError::new_err(message),
             Failure::Cancelled(message) => exceptions::Cancelled::new_err(message),
             Failure::File(message) => PyOSError::new_err(message),
+            Failure::Internal(message) => exceptions::Error::new_err(message),
             Failure::Python(error) => error,
         }
     }
@@ -63,13 +67,7 @@ macro_rules! input_errors {
     };
 }
 
-input_errors!(
-    lisle_core::Error,
-    lisle_core::scattering::MaterialError,
-    lisle_core::yarn::YarnError,
-    lisle_fabric::Error,
-    lisle_formats::Error,
-);
+input_errors!(lisle_core::Error, lisle_core::yarn::YarnError, lisle_fabric::Error, lisle_formats::Error,);
 
 impl From<lisle_gpu::Error> for Failure {
     fn from(error: lisle_gpu::Error) -> Self {

@@ -1,17 +1,26 @@
 //! The one place that releases the GIL, and the way back to Python from there.
 
 use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use pyo3::prelude::*;
 
 use crate::error::Failure;
 
-/// Does long work while other Python threads run.
+/// Does long work while other Python threads run. A panic in it becomes an error that `except Exception` catches, which
+/// `PanicException` is not: inside Blender it would end the process.
 pub fn detached<T: Send, E: Into<Failure> + Send>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, E> + Send,
 ) -> Result<T, Failure> {
-    py.detach(work).map_err(Into::into)
+    match py.detach(|| catch_unwind(AssertUnwindSafe(work))) {
+        Ok(result) => result.map_err(Into::into),
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no message");
+            Err(Failure::Internal(format!("internal error: {text}")))
+        }
+    }
 }
 
 /// Python's word in a long call: the progress callback, and Ctrl-C.

@@ -42,7 +42,14 @@ pub fn extract_material(material: &Bound<'_, PyAny>) -> Result<Material, Failure
 /// Refuses a material with a field outside of its range.
 #[pyfunction]
 pub fn check_material(material: &Bound<'_, PyAny>) -> Result<(), Failure> {
-    Ok(extract_material(material)?.validate()?)
+    extract_material(material)?.validate().map_err(|error| {
+        // Angles are degrees on this side.
+        let (field, value, unit) = match error.parameter.strip_suffix("_rad") {
+            Some(angle) => (format!("{angle}_deg"), error.value.to_degrees(), " radians"),
+            None => (error.parameter.to_owned(), error.value, ""),
+        };
+        Failure::Input(format!("material parameter `{field}` is {value}: expected {}{unit}", error.expected))
+    })
 }
 
 /// Names that `material_preset` takes.

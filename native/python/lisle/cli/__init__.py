@@ -27,6 +27,9 @@ def parser() -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Runs a command line and returns its exit code."""
     arguments = parser().parse_args(argv)
+    if "XDG_RUNTIME_DIR" not in os.environ:
+        # Without a desktop session, Mesa's layer that picks a GPU by the session's wishes complains on standard error.
+        os.environ.setdefault("NODEVICE_SELECT", "1")
     try:
         arguments.run(arguments)
         sys.stdout.flush()

@@ -1,0 +1,104 @@
+import math
+
+import lisle
+import numpy as np
+import pytest
+from conftest import line
+
+
+@pytest.mark.parametrize("direction", [(0, -1, 0.3), (1, 0, 0), (0, 0, 1), (0, 0, -5), (-3, 2, -1)])
+@pytest.mark.parametrize("size", [(1280, 960), (200, 900)])
+def test_a_fitted_camera_sees_every_point_and_not_much_else(direction, size):
+    yarns = lisle.knit_tube(courses=12, wales=24)
+    camera = lisle.Camera.fit(yarns, direction, size)
+    assert camera.size == size
+    clip_from_world = camera.clip_from_camera @ np.linalg.inv(camera.world_from_camera)
+    clip = np.column_stack([yarns.points, np.ones(len(yarns.points))]) @ clip_from_world.T
+    assert (clip[:, 3] > 0).all()
+    view = clip[:, :3] / clip[:, 3:]
+    assert (np.abs(view) < 1).all()
+    assert np.abs(view[:, :2]).max() > 0.7
+    rotation = camera.world_from_camera[:3, :3]
+    np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(rotation) == pytest.approx(1)
+    np.testing.assert_allclose(rotation[:, 2], np.array(direction) / np.linalg.norm(direction), atol=1e-12)
+
+
+def test_a_camera_keeps_its_matrices():
+    world_from_camera = np.eye(4)
+    world_from_camera[:3, 3] = 1, 2, 3
+    camera = lisle.Camera.from_matrices(world_from_camera.tolist(), np.diag([1, 2, -1, 1]), (20, 10))
+    np.testing.assert_array_equal(camera.world_from_camera, world_from_camera)
+    np.testing.assert_array_equal(camera.clip_from_camera, np.diag([1.0, 2.0, -1.0, 1.0]))
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: lisle.Camera.from_matrices(np.eye(3), np.eye(4), (1, 1)), ["world_from_camera", "(3, 3)"]),
+        (lambda: lisle.Camera.from_matrices(np.eye(4), np.eye(4) * np.nan, (1, 1)), ["clip_from_camera", "[0, 0]"]),
+        (lambda: lisle.Camera.from_matrices(np.eye(4), np.zeros((4, 4)), (1, 1)), ["clip_from_camera", "singular"]),
+        (lambda: lisle.Camera.from_matrices(np.eye(4), np.eye(4), (0, 1)), ["size", "0×1"]),
+        (lambda: lisle.Sun(direction=(0, 0, 0)), ["Sun.direction"]),
+        (lambda: lisle.Sun(direction=(0, 0, 1), strength=-1), ["Sun.strength", "-1"]),
+        (lambda: lisle.Point(position=(0, 0)), ["Point.position", "three numbers"]),
+        (lambda: lisle.Point(position=(0, 0, math.inf)), ["Point.position", "inf"]),
+        (lambda: lisle.Spot((0, 0, 0), (0, 0, 1), cone_angle_rad=4), ["Spot.cone_angle_rad"]),
+        (lambda: lisle.Spot((0, 0, 0), (0, 0, 1), blend=2), ["Spot.blend"]),
+        (lambda: lisle.Area(np.zeros((4, 4))), ["Area.world_from_light", "singular"]),
+        (lambda: lisle.Area(np.eye(4), size=(1, 0)), ["Area.size"]),
+        (lambda: lisle.Area(np.eye(4), shape="star"), ["Area.shape", "star"]),
+    ],
+)
+def test_bad_cameras_and_lights_are_refused_by_name(make, words):
+    with pytest.raises(lisle.InputError) as caught:
+        make()
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_what_is_added_to_a_scene_is_checked(swatch, camera):
+    scene = lisle.Scene(camera)
+    scene.add(swatch, name="front")
+    assert [(added.name, added.object_id) for added in scene.objects] == [("front", 1)]
+    for arguments, words in [
+        (dict(yarns="swatch"), "Yarns"),
+        (dict(yarns=swatch, yarn="cotton-1"), "back: yarn"),
+        (dict(yarns=swatch, material=lisle.Yarn.preset("silk-1")), "back: material"),
+        (dict(yarns=swatch, transform=np.eye(3)), "back: transform"),
+        (dict(yarns=swatch, object_id=0), "back: object_id 0"),
+    ]:
+        with pytest.raises(lisle.InputError, match=words):
+            scene.add(**arguments, name="back")
+    with pytest.raises(lisle.InputError, match="light 1"):
+        lisle.Scene(camera, [lisle.Sun((0, 0, -1)), "lamp"])
+    with pytest.raises(lisle.InputError, match="camera"):
+        lisle.Scene(None)
+
+
+def test_makers_of_cloth():
+    swatch = lisle.knit_swatch("rib-2-2", courses=5, wales=8)
+    assert len(swatch) == 5
+    assert not swatch.closed.any()
+    assert lisle.knit_tube(courses=5, wales=12).closed.all()
+    straight = lisle.knit_sleeve([(0, 0, 0), (0, 0, 0.1), (0, 0, 0.2)], 0.03, courses=8, wales=20)
+    bent = lisle.knit_sleeve([(0, 0, 0), (0, 0, 0.1), (0.1, 0, 0.15)], 0.03, courses=8, wales=20)
+    assert straight.with_points(bent.points).points.shape == straight.points.shape
+    assert lisle.sweater(20_000).points.shape[0] <= 20_000
+    np.testing.assert_array_equal(lisle.knit_swatch("kp pk").points, lisle.knit_swatch("KP PK").points)
+    for call, word in [
+        (lambda: lisle.knit_swatch("knots"), "n"),
+        (lambda: lisle.knit_swatch(courses=0), "0 courses"),
+        (lambda: lisle.knit_swatch(courses=-1), "courses"),
+        (lambda: lisle.knit_swatch(yarn_radius=0), "radius"),
+        (lambda: lisle.knit_tube("rib-2-2", wales=13), "13 wales"),
+        (lambda: lisle.knit_sleeve([(0, 0, 0)], 0.1), "centre line"),
+        (lambda: lisle.sweater(10), "10"),
+    ]:
+        with pytest.raises(lisle.InputError, match=word):
+            call()
+
+
+def test_one_straight_yarn_has_a_camera_too():
+    camera = lisle.Camera.fit(lisle.Yarns(line(), [0, 5], yarn_radius=0.01), direction=(1, 0, 0))
+    assert np.isfinite(camera.world_from_camera).all()
