@@ -5,28 +5,34 @@ The numbers live in the native module and nowhere else; `tests/blender/test_pres
 The numbers at the end are stored in .blend files: never renumber.
 """
 
-_MEASURED = (
-    ("cotton-1", "Cotton 1", "White cotton, three plies"),
-    ("cotton-2", "Cotton 2", "Loose cotton, three plies"),
-    ("rayon-1", "Rayon 1", "Thick rayon, two plies with many fibers"),
-    ("rayon-2", "Rayon 2", "Thin rayon, two plies"),
-    ("rayon-3", "Rayon 3", "Thick rayon with wide flyaways"),
-    ("rayon-4", "Rayon 4", "Thick rayon with an even density"),
-    ("silk-1", "Silk 1", "Fine silk, three plies"),
-    ("silk-2", "Silk 2", "Fine silk, three loose plies"),
-    ("polyester-1", "Polyester 1", "Polyester, two plies"),
+YARN_ITEMS = (
+    ("cotton-1", "Cotton 1", "Three plies, soft, with many fibers", 0),
+    ("cotton-2", "Cotton 2", "Three plies, thin, with few fibers", 1),
+    ("rayon-1", "Rayon 1", "Two thick plies with many fibers", 2),
+    ("rayon-2", "Rayon 2", "Two thin plies", 3),
+    ("rayon-3", "Rayon 3", "Two thick plies with wide flyaways", 4),
+    ("rayon-4", "Rayon 4", "Two thick plies of even density", 5),
+    ("silk-1", "Silk 1", "Three fine plies", 6),
+    ("silk-2", "Silk 2", "Three loose plies", 7),
+    ("polyester-1", "Polyester 1", "Two thin plies with few fibers", 8),
 )
-_FITTED = (
-    ("fleece", "Fleece", "Blue fleece"),
-    ("gabardine", "Gabardine", "Red gabardine"),
-    ("silk", "Silk", "Silk with a red sheen"),
-    ("cotton", "Cotton", "White cotton"),
-)
-
-YARN_ITEMS = tuple((name, label, note, number) for number, (name, label, note) in enumerate(_MEASURED))
 """Items of an EnumProperty: the yarns of Zhao et al. 2016, table 2."""
 
-FIBER_ITEMS = tuple((name, label, note, number) for number, (name, label, note) in enumerate(_MEASURED + _FITTED))
+FIBER_ITEMS = (
+    ("cotton-1", "Cotton 1", "White", 0),
+    ("cotton-2", "Cotton 2", "Orange", 1),
+    ("rayon-1", "Rayon 1", "Light blue", 2),
+    ("rayon-2", "Rayon 2", "Sky blue", 3),
+    ("rayon-3", "Rayon 3", "Black", 4),
+    ("rayon-4", "Rayon 4", "Cream", 5),
+    ("silk-1", "Silk 1", "Pink", 6),
+    ("silk-2", "Silk 2", "Teal", 7),
+    ("polyester-1", "Polyester 1", "Yellow", 8),
+    ("fleece", "Fleece", "Blue, matte", 9),
+    ("gabardine", "Gabardine", "Red, with a dull sheen", 10),
+    ("silk", "Silk", "Grey with a strong red sheen", 11),
+    ("cotton", "Cotton", "White with a strong sheen", 12),
+)
 """Items of an EnumProperty: fibers of Zhao et al. 2016, table 3, and of Khungurn et al. 2015."""
 
 DEFAULT_YARN = "cotton-1"
