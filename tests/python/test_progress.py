@@ -1,5 +1,6 @@
 """Long calls: progress, cancelling, exceptions, the GIL, Ctrl-C."""
 
+import itertools
 import signal
 import subprocess
 import sys
@@ -80,7 +81,7 @@ def test_other_threads_run_meanwhile(draw):
     finally:
         running = False
         thread.join()
-    assert all(later > earlier for earlier, later in zip(between, between[1:], strict=False))
+    assert all(later > earlier for earlier, later in itertools.pairwise(between))
 
 
 def test_two_threads_share_a_renderer(draw):

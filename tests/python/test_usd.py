@@ -82,10 +82,7 @@ def shape_of(yarns, curve=0):
     """The same samples of a loaded curve, by the basis that it was given."""
     basis = {0: "catmullRom", 2: "bezier", 4: "bspline"}[int(yarns.basis[curve])]
     start, end = yarns.offsets[curve : curve + 2]
-    if yarns.closed[curve]:
-        wrap = "periodic"
-    else:
-        wrap = "pinned" if basis == "catmullRom" else "nonperiodic"
+    wrap = "periodic" if yarns.closed[curve] else "pinned" if basis == "catmullRom" else "nonperiodic"
     points, radii = yarns.points[start:end].astype(float), yarns.radii[start:end].astype(float)
     return expected_segments(points, basis, wrap), expected_segments(radii[:, None], basis, wrap)[..., 0]
 

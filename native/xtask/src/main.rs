@@ -1,2 +1,63 @@
-//! Lisle: xtask.
-fn main() {}
+//! `cargo xtask demo | test | bench | package`: everything that one command has to do on a fresh machine.
+//!
+//! Set-up is done once and remembered with stamps under `target/`; a second run goes straight to the work.
+
+mod bench;
+mod blender;
+mod demo;
+mod extension;
+mod failure;
+mod python;
+mod shell;
+mod test;
+mod vulkan;
+mod wheel;
+
+use std::process::ExitCode;
+
+use failure::Failure;
+
+const USAGE: &str = "\
+cargo xtask COMMAND
+
+  demo     render the knitted animation of examples/ through Blender to out/demo/
+  test     every test: Rust, Python, inside Blender; formatting and lints; the extension's manifest
+  bench    the benchmark; further arguments go to it
+  package  build the Blender extension with its wheel: target/extension/
+";
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let command = arguments.next();
+    let rest: Vec<String> = arguments.collect();
+    let result = match (command.as_deref(), rest.as_slice()) {
+        (Some("demo"), []) => demo::run(),
+        (Some("test"), []) => test::run(),
+        (Some("bench"), rest) => bench::run(rest),
+        (Some("package"), []) => package(),
+        (Some("help" | "--help" | "-h"), _) => {
+            print!("{USAGE}");
+            Ok(())
+        }
+        _ => {
+            eprint!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("\nxtask: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The extension for other machines: its wheel runs on any Linux that Blender runs on.
+fn package() -> Result<(), Failure> {
+    let blender = blender::Modules::newest()?;
+    let wheel = wheel::portable()?;
+    let archive = extension::build(&wheel, &blender)?;
+    println!("{}", archive.display());
+    Ok(())
+}

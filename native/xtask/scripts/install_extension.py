@@ -1,0 +1,16 @@
+"""Installs an extension from disk into this Blender's settings and enables it: `-- ARCHIVE MODULE`."""
+
+import os
+import sys
+
+import bpy
+
+archive, module = sys.argv[sys.argv.index("--") + 1 :]
+bpy.ops.extensions.package_install_files(filepath=archive, repo="user_default", enable_on_install=True)
+if module not in bpy.context.preferences.addons:
+    print(f"{module} is not enabled after its installation", file=sys.stderr)
+    os._exit(1)
+bpy.ops.wm.save_userpref()
+# As a module, Blender may hang at exit.
+sys.stdout.flush()
+os._exit(0)

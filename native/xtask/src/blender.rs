@@ -1,0 +1,125 @@
+//! Blender, as a program on PATH or as the module `bpy` in a virtual environment.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::failure::Failure;
+use crate::python::{Environment, Interpreter, interpreters};
+use crate::shell::{command, folder, once, output, run, say};
+
+/// Releases that are supported, with the Python of their `bpy` wheels; the one that a demo takes first.
+const RELEASES: [(&str, (u32, u32)); 3] = [("5.0", (3, 11)), ("4.5", (3, 11)), ("5.2", (3, 13))];
+
+/// The oldest that the extension runs in.
+const OLDEST: (u32, u32) = (4, 5);
+
+/// Where the extension is enabled: its package below Blender's own.
+pub const MODULE: &str = "bl_ext.user_default.lisle_blender";
+
+/// Blender as a Python module.
+pub struct Modules {
+    /// Such as "5.0".
+    pub release: &'static str,
+    /// With `bpy`, and what tests need.
+    pub environment: Environment,
+}
+
+impl Modules {
+    fn new(release: &'static str, interpreter: &Interpreter) -> Result<Self, Failure> {
+        let bpy = format!("bpy=={release}.*");
+        let environment = Environment::new(&format!("bpy-{release}"), interpreter, &[&bpy, "pytest>=8"])?;
+        Ok(Self { release, environment })
+    }
+
+    /// One for every release whose Python is on this machine, and the releases that were left out with the reason.
+    pub fn all() -> Result<(Vec<Self>, Vec<String>), Failure> {
+        let found = interpreters();
+        let (mut modules, mut missing) = (Vec::new(), Vec::new());
+        for (release, version) in RELEASES {
+            match found.iter().find(|interpreter| interpreter.version == version) {
+                Some(interpreter) => modules.push(Self::new(release, interpreter)?),
+                None => missing.push(format!("Blender {release}: no Python {}.{} here", version.0, version.1)),
+            }
+        }
+        Ok((modules, missing))
+    }
+
+    /// The first release whose Python is on this machine.
+    pub fn newest() -> Result<Self, Failure> {
+        let found = interpreters();
+        for (release, version) in RELEASES {
+            if let Some(interpreter) = found.iter().find(|interpreter| interpreter.version == version) {
+                return Self::new(release, interpreter);
+            }
+        }
+        Err(Failure::new("looking for Blender", "there is neither a blender ≥ 4.5 on PATH nor a Python 3.11 or 3.13")
+            .remedy("install Blender, or Python 3.11; on Debian 12: apt install python3.11-venv"))
+    }
+
+    /// Blender's tool for extensions, which is plain Python.
+    pub fn extension_tool(&self) -> Result<Command, Failure> {
+        let script = "import importlib.util as u; print(u.find_spec('bpy').submodule_search_locations[0])";
+        let package = output("looking for bpy", self.environment.python().args(["-c", script]))?;
+        let tool = Path::new(package.trim()).join(self.release).join("scripts/addons_core/bl_pkg/cli/blender_ext.py");
+        let mut python = self.environment.python();
+        python.arg(tool);
+        Ok(python)
+    }
+}
+
+/// The program on PATH, if it is recent enough.
+pub fn on_path() -> Option<String> {
+    let text = output("blender", command("blender").arg("--version")).ok()?;
+    let version = text.split_whitespace().nth(1)?;
+    let mut numbers = version.split('.').map_while(|number| number.parse::<u32>().ok());
+    let release = (numbers.next()?, numbers.next()?);
+    (release >= OLDEST).then(|| version.to_owned())
+}
+
+/// Something that runs a Python script inside Blender, with settings of its own that leave the user's alone.
+pub struct Host {
+    run: Box<dyn Fn(&Path) -> Command>,
+    /// For people.
+    pub name: String,
+    settings: PathBuf,
+}
+
+impl Host {
+    /// The program on PATH.
+    pub fn program(version: &str, settings: PathBuf) -> Self {
+        let run = |script: &Path| {
+            let mut blender = command("blender");
+            blender.args(["--background", "--python-exit-code", "1", "--python"]).arg(script).arg("--");
+            blender
+        };
+        Self { run: Box::new(run), name: format!("Blender {version}"), settings }
+    }
+
+    /// The module.
+    pub fn module(modules: Modules, settings: PathBuf) -> Self {
+        let name = format!("Blender {} (bpy)", modules.release);
+        let run = move |script: &Path| {
+            let mut python = modules.environment.python();
+            python.arg(script).arg("--");
+            python
+        };
+        Self { run: Box::new(run), name, settings }
+    }
+
+    /// A script in it; arguments follow.
+    pub fn script(&self, script: &Path) -> Command {
+        let mut command = (self.run)(script);
+        command.env("BLENDER_USER_RESOURCES", &self.settings);
+        command
+    }
+
+    /// Installs and enables an extension, unless this very one is there.
+    pub fn install(&self, archive: &Path, content: &str) -> Result<(), Failure> {
+        folder(&self.settings)?;
+        once(&self.settings.join("lisle-extension"), &format!("{} {content}", self.name), || {
+            say(&format!("Installing the extension in {}", self.name));
+            let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/install_extension.py");
+            run("installing the extension", self.script(&script).arg(archive).arg(MODULE))
+        })
+    }
+}
