@@ -1,0 +1,38 @@
+"""A knitted sleeve on an arm that bends at the elbow."""
+
+import sys
+from math import cos, radians, sin
+from pathlib import Path
+
+import lisle
+
+out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+out.mkdir(parents=True, exist_ok=True)
+
+
+def sleeve(angle_deg):
+    """The sleeve about an arm bent by that angle: an upper arm along +Z, an elbow of 60 mm radius, a forearm."""
+    bend, radius = radians(max(angle_deg, 1e-3)), 0.06 / max(radians(angle_deg), 0.05)
+    line = [(0.0, 0.0, 0.01 * i) for i in range(9)]
+    line += [(radius * (1 - cos(bend * i / 8)), 0.0, 0.08 + radius * sin(bend * i / 8)) for i in range(1, 9)]
+    x, _, z = line[-1]
+    line += [(x + sin(bend) * 0.01 * i, 0.0, z + cos(bend) * 0.01 * i) for i in range(1, 9)]
+    return lisle.knit_sleeve(line, radius=0.03, pattern="rib-1-1", courses=56, wales=28)
+
+
+rest = sleeve(0)
+renderer = lisle.Renderer()
+camera = lisle.Camera.fit(sleeve(70), direction=(-0.2, -1, 0.15), size=(640, 640))
+for number, angle in enumerate((0, 35, 70)):
+    image = renderer.render(
+        rest.with_points(sleeve(angle).points),
+        yarn=lisle.Yarn.preset("cotton-2"),
+        material=lisle.Material.preset("rayon-1"),
+        camera=camera,
+        lights=[lisle.Sun(direction=(1, 0.8, -0.9), strength=5, angle_rad=0.05)],
+        ambient=(0.4, 0.4, 0.4),
+        samples=16,
+    )
+    path = out / f"sleeve_{number:04d}.png"
+    image.save(path)
+    print(path)
