@@ -1,10 +1,9 @@
 //! The visibility of fibers on the CPU, in f64: every fiber as a chain of short chords from `lisle_core::yarn`, and for every
 //! pixel centre the nearest of the round tubes about them that its ray meets. No culling, no levels of detail, no tables.
 
-use std::collections::HashMap;
-use std::f64::consts::TAU;
+use std::collections::HashSet;
 
-use glam::{DMat4, DVec2, DVec3, DVec4, Vec4Swizzles};
+use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 use lisle_core::sampling::{hash_combine, normal_from_hash, unit_from_hash};
 use lisle_core::yarn::{Fiber, FiberTable, FiberType, Knot, Segment, Twist, Yarn, fiber_point};
 use lisle_gpu::{Camera, Object};
@@ -41,6 +40,9 @@ const EMPTY: Pixel = Pixel { hit: None, second: f64::INFINITY, edge: f64::INFINI
 
 /// Pixels from a silhouette within which rounding decides.
 const EDGE: f64 = 0.05;
+
+/// Fiber radii that a chord reaches past its ends.
+const GAP: f64 = 0.1;
 
 /// Fiber radii of depth within which rounding decides between two fibers.
 const TIE: f64 = 0.1;
@@ -259,7 +261,12 @@ fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, 
             let t = on_screen.clamp(0.0, 1.0);
             let radius = ra + (rb - ra) * t;
             let away = center - (a + along * t);
-            let distance = away.length();
+            // Past its ends a chord only closes the gap that its bend to the next one opens.
+            let past = (on_screen - t).abs() * along.length();
+            if past > EDGE + GAP * radius {
+                continue;
+            }
+            let distance = (away.length_squared() - past * past).max(0.0).sqrt();
             let pixel = &mut pixels[(y - rows.start) * width + x];
             // A tube of no width is not drawn.
             if radius <= 0.0 {
@@ -279,12 +286,11 @@ fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, 
             let forward = across.cross(tangent);
             // The side on which the pixel lies, by moving the point a little.
             let moved = view.pixel(position + across * (1e-4 * chord.a.radius.max(1e-9))) - view.pixel(position);
-            // Past an end of the chord, the distance from it drawn on.
-            let perpendicular = (along.perp_dot(center - a) / along.length().max(1e-10)).abs();
-            let x = (perpendicular.min(distance) / radius).min(1.0) * away.dot(moved).signum();
+            let x = (distance / radius).min(1.0) * away.dot(moved).signum();
             let up = (1.0 - x * x).sqrt();
             let surface = chord.a.radius + (chord.b.radius - chord.a.radius) * share;
-            let depth = view.depth(position) - up * surface;
+            // A ray meets a tube that leans towards it earlier.
+            let depth = view.depth(position) - up * surface / sin_view.max(0.2);
             if (distance - radius).abs() < EDGE {
                 pixel.edge = pixel.edge.min(depth);
             }
@@ -316,25 +322,7 @@ fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, 
     }
 }
 
-/// Turns, per unit of rest length, of a preset on a yarn of a radius: how closely knots must lie for short chords.
-pub fn turns_per_length(yarn: &Yarn, radius: f64) -> f64 {
-    let per_radius = yarn.outer_radius() * (1.0 / yarn.fiber_twist.abs() + 1.0 / yarn.ply_twist.abs());
-    per_radius / radius
-}
-
 /// Number of distinct fibers that a picture shows.
 pub fn fibers_seen(pixels: &[Pixel]) -> usize {
-    let mut seen = HashMap::new();
-    for hit in pixels.iter().filter_map(|p| p.hit) {
-        *seen.entry(hit.fiber).or_insert(0_u32) += 1;
-    }
-    seen.len()
+    pixels.iter().filter_map(|p| p.hit).map(|hit| hit.fiber).collect::<HashSet<_>>().len()
 }
-
-/// Mirrors x.
-pub fn mirror() -> DMat4 {
-    DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0))
-}
-
-/// One radian a turn.
-pub const TURN: f64 = TAU;
