@@ -6,6 +6,8 @@ import sys
 import bpy
 
 archive, module = sys.argv[sys.argv.index("--") + 1 :]
+if "bl_pkg" not in bpy.context.preferences.addons:
+    bpy.ops.preferences.addon_enable(module="bl_pkg")
 bpy.ops.extensions.package_install_files(filepath=archive, repo="user_default", enable_on_install=True)
 if module not in bpy.context.preferences.addons:
     print(f"{module} is not enabled after its installation", file=sys.stderr)

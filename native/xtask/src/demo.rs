@@ -5,10 +5,10 @@ use std::time::Instant;
 use crate::blender::{Host, Modules, on_path};
 use crate::failure::Failure;
 use crate::python::{Environment, any};
-use crate::shell::{digest, folder, root, run as run_command, say, target};
+use crate::shell::{digest, folder, root, say, target, tee};
 use crate::{extension, vulkan, wheel};
 
-const SCRIPT: &str = "examples/blender_knit_animation.py";
+const SCRIPT: &str = "examples/05_blender_knit_animation.py";
 
 /// Sets everything up, then renders to `out/demo/`.
 pub fn run() -> Result<(), Failure> {
@@ -16,7 +16,7 @@ pub fn run() -> Result<(), Failure> {
     let wheel = wheel::native()?;
     let plain = Environment::new("lisle", &any()?, &["numpy>=1.26"])?;
     plain.install(&wheel)?;
-    vulkan::ensure(&plain)?;
+    let adapters = vulkan::ensure(&plain)?;
 
     // Its tool packs the extension, whichever Blender then runs it.
     let modules = Modules::newest()?;
@@ -31,8 +31,16 @@ pub fn run() -> Result<(), Failure> {
 
     let out = root().join("out/demo");
     folder(&out)?;
-    say(&format!("Rendering {SCRIPT} with {}", host.name));
-    run_command("rendering", host.script(&root().join(SCRIPT)).arg("--output").arg(&out))?;
-    println!("\nin {:.0} s: {}", start.elapsed().as_secs_f64(), out.display());
+    say(&format!("Rendering {SCRIPT} with {} on {adapters}", host.name));
+    let rendering = Instant::now();
+    let (succeeded, lines) = tee("rendering", host.script(&root().join(SCRIPT)).arg(&out))?;
+    // Blender's own line for every picture on disk.
+    let frames = lines.iter().filter(|line| line.contains("Saved: '")).count();
+    if !succeeded || frames == 0 {
+        return Err(Failure::new("rendering", lines.last().map_or("it said nothing", String::as_str)));
+    }
+    let seconds = rendering.elapsed().as_secs_f64() / frames as f64;
+    println!("\n{frames} frames, {seconds:.2} s each, on {adapters}: {}", out.display());
+    println!("in {:.0} s, set-up included", start.elapsed().as_secs_f64());
     Ok(())
 }

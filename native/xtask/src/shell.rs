@@ -24,6 +24,10 @@ pub fn target() -> PathBuf {
 pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root());
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // Without a desktop session, Mesa's layer that picks a GPU by the session's wishes complains on standard error.
+        command.env("NODEVICE_SELECT", "1");
+    }
     command
 }
 

@@ -1,5 +1,6 @@
 //! Every test there is.
 
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -92,18 +93,22 @@ pub fn run() -> Result<(), Failure> {
     let rust = ["test", "--workspace", "--exclude", "lisle-python"];
     report.step("cargo test --workspace", || closing("cargo test", cargo().args(rust)));
     if let Some(python) = &environment {
-        report.step("pytest tests/python", || pytest(python, "tests/python"));
+        report.step("pytest tests/python", || pytest(python, "tests/python", None));
     }
 
     let (modules, missing) = Modules::all()?;
+    let mut archive = None;
+    if let Some(module) = modules.first() {
+        report.step("the extension, and blender_ext.py validate", || {
+            archive = Some(extension::build(&wheel, module)?);
+            Ok(Vec::new())
+        });
+    }
     for module in &modules {
         report.step(&format!("pytest tests/blender in Blender {}", module.release), || {
             module.environment.install(&wheel)?;
-            pytest(&module.environment, "tests/blender")
+            pytest(&module.environment, "tests/blender", archive.as_deref())
         });
-    }
-    if let Some(module) = modules.first() {
-        report.step("the extension's manifest", || extension::build(&wheel, module).map(|_| Vec::new()));
     }
 
     say("Summary");
@@ -120,8 +125,11 @@ pub fn run() -> Result<(), Failure> {
     if report.failed.is_empty() { Ok(()) } else { Err(Failure::new("the test", report.failed.join("; "))) }
 }
 
-fn pytest(environment: &Environment, folder: &str) -> Result<Vec<String>, Failure> {
+fn pytest(environment: &Environment, folder: &str, archive: Option<&Path>) -> Result<Vec<String>, Failure> {
     let mut python = environment.python();
     python.args(["-m", "pytest", "-p", "no:cacheprovider"]).arg(root().join(folder));
+    if let Some(archive) = archive {
+        python.env("LISLE_PACKAGE", archive);
+    }
     closing(&format!("pytest {folder}"), &mut python)
 }

@@ -6,7 +6,7 @@ use crate::shell::{command, output, run, say};
 
 const PACKAGE: &str = "mesa-vulkan-drivers";
 
-/// Names of the adapters that answer, asked through an environment that has the wheel.
+/// Names of the adapters that answer, the default one first, asked through an environment that has the wheel.
 fn adapters(environment: &Environment) -> Result<String, Failure> {
     let script = "import lisle; print(', '.join(adapter.name for adapter in lisle.adapters()))";
     let names = output("looking for graphics adapters", environment.python().args(["-c", script]))?;
@@ -14,9 +14,11 @@ fn adapters(environment: &Environment) -> Result<String, Failure> {
 }
 
 /// Makes sure that an adapter answers: where none does, Debian's software driver is installed, given the right to.
-pub fn ensure(environment: &Environment) -> Result<(), Failure> {
-    if !adapters(environment)?.is_empty() {
-        return Ok(());
+/// Returns the names of those that answer, the default one first.
+pub fn ensure(environment: &Environment) -> Result<String, Failure> {
+    let found = adapters(environment)?;
+    if !found.is_empty() {
+        return Ok(found);
     }
     let none = || Failure::new("looking for graphics adapters", "no Vulkan driver answers");
     let is_root = output("id", command("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
@@ -28,5 +30,6 @@ pub fn ensure(environment: &Environment) -> Result<(), Failure> {
     run("apt-get update", command("apt-get").args(["update", "--quiet"]))?;
     let install = ["install", "--quiet", "--yes", "--no-install-recommends", PACKAGE, "libvulkan1"];
     run("apt-get install", command("apt-get").args(install).env("DEBIAN_FRONTEND", "noninteractive"))?;
-    if adapters(environment)?.is_empty() { Err(none().remedy("see `vulkaninfo --summary`")) } else { Ok(()) }
+    let found = adapters(environment)?;
+    if found.is_empty() { Err(none().remedy("see `vulkaninfo --summary`")) } else { Ok(found) }
 }
