@@ -3,7 +3,7 @@
 With a `blender` on the PATH:  blender -b -P 05_blender_knit_animation.py -- out/demo
 With the `bpy` wheel:          python 05_blender_knit_animation.py out/demo
 
-Options after the folder: --frames N (24), --size WxH (640x480), --samples N (8), --save FILE.blend to keep the scene,
+Options after the folder: --frames N (24), --size WxH (640x480), --samples N (6), --save FILE.blend to keep the scene,
 --still to render the first frame alone.
 """
 
@@ -103,12 +103,12 @@ def add_camera_and_lights():
 
     camera = bpy.data.cameras.new("Camera")
     camera.lens, camera.clip_start = 70, 0.01
-    scene.camera = add("Camera", camera, (0.06, -0.17, 0.055))
+    scene.camera = add("Camera", camera, (0.09, -0.27, 0.07))
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle, sun.color = 5, 0.05, (1, 0.95, 0.88)
-    add("Sun", sun, (-1, -0.8, 1.1))
+    add("Sun", sun, (-0.5, -1, 1.1))
     rim = bpy.data.lights.new("Rim", "AREA")
-    rim.energy, rim.size, rim.color = 0.12, 0.2, (0.75, 0.85, 1)
+    rim.energy, rim.size, rim.color = 0.25, 0.2, (0.75, 0.85, 1)
     add("Rim", rim, (0.2, 0.1, 0.2))
     world = bpy.data.worlds.new("World")
     world.color = (0.35, 0.37, 0.40)
@@ -123,7 +123,7 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--frames", type=int, default=24)
     parser.add_argument("--size", default="640x480")
-    parser.add_argument("--samples", type=int, default=8)
+    parser.add_argument("--samples", type=int, default=6)
     parser.add_argument("--save", type=Path)
     parser.add_argument("--still", action="store_true")
     options = parser.parse_args(arguments)

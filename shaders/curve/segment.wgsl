@@ -15,6 +15,8 @@ struct Segment {
     // Share of the curve's length since the segment's start, and radius.
     length: vec4f,
     radius: vec4f,
+    // Where the segment ends: position and radius of its second knot.
+    end: vec4f,
     // Turns of plies and fibers at the segment's start, modulo 1.
     ply_turns: f32,
     fiber_turns: f32,
@@ -118,6 +120,7 @@ fn segment_between(k0: Knot, k1: Knot, k2: Knot, k3: Knot, curve: Curve, handedn
         limited_slope(k1.radius - k0.radius, k2.radius - k1.radius),
         limited_slope(k2.radius - k1.radius, k3.radius - k2.radius),
     );
+    s.end = vec4f(k2.position, k2.radius);
     s.ply_turns = turns_at(k1.length, curve.ply_whole, curve.ply_rest).part;
     s.fiber_turns = turns_at(k1.length, curve.fiber_whole, curve.fiber_rest).part;
     let migration = turns_at(k1.length, curve.migration_whole, curve.migration_rest);

@@ -1,7 +1,7 @@
 // Host-shared structs; their Rust side is native/gpu/src/layout.rs, compared member by member in its tests.
 //
 // Spaces: "object" is the curve object's own space, recentred; "render" has the world's axes and its origin at the
-// camera; "pixel" is the drawn region, x to the right, y down, pixel centres at integers + 0.5.
+// camera; "pixel" is the whole frame, x to the right, y down, pixel centres at integers + 0.5.
 
 const NO_VIEW: u32 = 0xffffffffu;
 
@@ -15,6 +15,7 @@ struct Frame {
     depth_min: f32,
     depth_scale: f32,
     near: f32,
+    // Of the tile that is drawn.
     size: vec2u,
     segment_count: u32,
     draw_count: u32,
@@ -36,9 +37,9 @@ struct Frame {
     opaque_background: u32,
     // Least w at which sizes on the screen are measured: the near plane, or 1 for an orthographic view.
     least_w: f32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
+    padding: u32,
+    // First pixel of the tile.
+    origin: vec2u,
 }
 
 // One yarn object, or one instance of it.
@@ -51,7 +52,6 @@ struct Draw {
     knot_count: u32,
     yarn: u32,
     material: u32,
-    object_id: u32,
     seed: u32,
     // Render-space radius of a knot's stored value 65535.
     radius_max: f32,
@@ -60,6 +60,7 @@ struct Draw {
     padding_0: u32,
     padding_1: u32,
     padding_2: u32,
+    padding_3: u32,
 }
 
 // Turns over a whole curve: whole part and rest, since the length coordinate is a 32-bit fraction of the curve's length.

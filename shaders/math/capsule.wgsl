@@ -53,10 +53,12 @@ struct LineWalk {
     last: i32,
     slope: f32,
     reach: f32,
-    most: f32,
+    // Border across: first pixel and one past the last.
+    low: f32,
+    high: f32,
 }
 
-fn line_walk(line: Line, size: vec2f) -> LineWalk {
+fn line_walk(line: Line, low: vec2f, high: vec2f) -> LineWalk {
     var w: LineWalk;
     w.flat = abs(line.direction.x) >= abs(line.direction.y);
     let radius = max(line.a.radius, line.b.radius);
@@ -64,11 +66,11 @@ fn line_walk(line: Line, size: vec2f) -> LineWalk {
     let b = select(line.b.position.y, line.b.position.x, w.flat);
     let major = select(line.direction.y, line.direction.x, w.flat);
     let minor = select(line.direction.x, line.direction.y, w.flat);
-    let most = select(size.y, size.x, w.flat);
-    w.most = select(size.x, size.y, w.flat);
-    w.first = i32(ceil(clamp(min(a, b) - radius - 0.5, -1.0, most)));
-    w.last = i32(floor(clamp(max(a, b) + radius - 0.5, -1.0, most - 1.0)));
-    w.first = max(w.first, 0);
+    let along = select(vec2f(low.y, high.y), vec2f(low.x, high.x), w.flat);
+    w.low = select(low.x, low.y, w.flat);
+    w.high = select(high.x, high.y, w.flat);
+    w.first = i32(ceil(clamp(min(a, b) - radius - 0.5, along.x, along.y)));
+    w.last = i32(floor(clamp(max(a, b) + radius - 0.5, along.x - 1.0, along.y - 1.0)));
     w.slope = select(minor / major, 0.0, abs(major) < 1e-12);
     w.reach = radius * sqrt(1.0 + w.slope * w.slope);
     return w;
@@ -81,7 +83,7 @@ fn line_span(line: Line, w: LineWalk, i: i32) -> vec2i {
     let at = clamp(f32(i) + 0.5, min(a.x, b.x), max(a.x, b.x));
     let center = a.y + (at - a.x) * w.slope;
     return vec2i(
-        max(i32(ceil(clamp(center - w.reach - 0.5, -1.0, w.most))), 0),
-        i32(floor(clamp(center + w.reach - 0.5, -1.0, w.most - 1.0))),
+        i32(ceil(clamp(center - w.reach - 0.5, w.low, w.high))),
+        i32(floor(clamp(center + w.reach - 0.5, w.low - 1.0, w.high - 1.0))),
     );
 }

@@ -33,14 +33,15 @@ fn work_of(segment: u32) -> u32 {
     let yarn = yarns[draws[draw].yarn];
     let radius = yarn.bound * max(knot_radius(draw, knot), knot_radius(draw, knot + 1u)) + 1.0 / frame.pixels_per_unit;
     let rows = transpose(frame.pixel_from_render);
-    let size = vec2f(frame.size);
-    if outside(rows[0], hull, radius) || outside(rows[2] * size.x - rows[0], hull, radius)
-        || outside(rows[1], hull, radius) || outside(rows[2] * size.y - rows[1], hull, radius)
+    let low = vec2f(frame.origin);
+    let high = vec2f(frame.origin + frame.size);
+    if outside(rows[0] - rows[2] * low.x, hull, radius) || outside(rows[2] * high.x - rows[0], hull, radius)
+        || outside(rows[1] - rows[2] * low.y, hull, radius) || outside(rows[2] * high.y - rows[1], hull, radius)
         || outside(rows[3] - vec4f(0.0, 0.0, 0.0, frame.near), hull, radius) {
         return 0u;
     }
-    let ends = detail_ends(yarn, draw, segment);
-    let count = max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1]));
+    let scale = scale_between(yarn, p1, knot_radius(draw, knot), p2, knot_radius(draw, knot + 1u));
+    let count = most_fibers(yarn, scale);
     atomicAdd(&fibers, yarn.plies * count);
     // At least one item, by which the core pass knows that the segment is in view.
     return yarn.plies * max(1u, (count + CHUNK - 1u) / CHUNK);

@@ -17,16 +17,6 @@ fn core_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
     return fiber_steps(yarn, s, radius_pixels);
 }
 
-// Largest radius of a segment's ends on the screen.
-fn segment_radius_pixels(s: Segment) -> f32 {
-    let end = s.position.a + s.position.b + s.position.c + s.position.d;
-    let w0 = (frame.pixel_from_render * vec4f(s.position.a, 1.0)).z;
-    let w1 = (frame.pixel_from_render * vec4f(end, 1.0)).z;
-    let r0 = radius_in_pixels(s.radius.x, max(w0, frame.least_w));
-    let r1 = radius_in_pixels(dot(s.radius, vec4f(1.0)), max(w1, frame.least_w));
-    return max(r0, r1);
-}
-
 struct FiberEnd {
     line: LineEnd,
     piece: u32,

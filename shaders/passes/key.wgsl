@@ -37,3 +37,9 @@ fn key_parts(key: Key) -> KeyParts {
 fn place_scale() -> f32 {
     return f32((1u << frame.place_bits) - 1u);
 }
+
+// Where a pixel of the frame is kept.
+fn tile_index(pixel: vec2i) -> u32 {
+    let local = vec2u(pixel) - frame.origin;
+    return local.y * frame.size.x + local.x;
+}

@@ -71,16 +71,30 @@ fn radius_in_pixels(radius: f32, w: f32) -> f32 {
     return radius * frame.pixels_per_unit / w;
 }
 
-// Details at both ends of a segment.
-fn detail_ends(yarn: Yarn, draw: u32, segment: u32) -> array<Detail, 2> {
-    let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
-    var ends: array<Detail, 2>;
-    for (var i = 0u; i < 2u; i++) {
-        let w = (frame.pixel_from_render * vec4f(knot_position(draw, knot + i), 1.0)).z;
-        let pixels = radius_in_pixels(knot_radius(draw, knot + i), max(w, frame.least_w));
-        ends[i] = detail_at(yarn, pixels, frame.lod_pixels);
-    }
-    return ends;
+fn pixels_at(position: vec3f, radius: f32) -> f32 {
+    let w = (frame.pixel_from_render * vec4f(position, 1.0)).z;
+    return radius_in_pixels(radius, max(w, frame.least_w));
+}
+
+// A segment's size and level of detail on the screen, at its two ends.
+struct Scale {
+    radius_pixels: f32,
+    ends: array<Detail, 2>,
+}
+
+fn scale_between(yarn: Yarn, start: vec3f, start_radius: f32, end: vec3f, end_radius: f32) -> Scale {
+    let a = pixels_at(start, start_radius);
+    let b = pixels_at(end, end_radius);
+    let ends = array<Detail, 2>(detail_at(yarn, a, frame.lod_pixels), detail_at(yarn, b, frame.lod_pixels));
+    return Scale(max(a, b), ends);
+}
+
+fn scale_of(yarn: Yarn, s: Segment) -> Scale {
+    return scale_between(yarn, s.position.a, s.radius.x, s.end.xyz, s.end.w);
+}
+
+fn most_fibers(yarn: Yarn, scale: Scale) -> u32 {
+    return max(fiber_count(yarn, scale.ends[0]), fiber_count(yarn, scale.ends[1]));
 }
 
 fn mix_detail(ends: array<Detail, 2>, t: f32) -> Detail {

@@ -44,7 +44,7 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
                 LineEnd(previous.xy, previous.w, previous_radius * view.texels_per_unit / previous.z),
                 LineEnd(next.xy, next.w, next_radius * view.texels_per_unit / next.z),
             );
-            let walk = line_walk(line, vec2f(size));
+            let walk = line_walk(line, vec2f(0.0), vec2f(size));
             for (var i = walk.first; i <= walk.last; i++) {
                 let span = line_span(line, walk, i);
                 for (var j = span.x; j <= span.y; j++) {

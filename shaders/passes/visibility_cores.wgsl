@@ -6,7 +6,7 @@ fn draw_core(yarn: Yarn, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b
         LineEnd(a.position, a.depth, a.half_width * yarn.core_half_width),
         LineEnd(b.position, b.depth, b.half_width * yarn.core_half_width),
     );
-    let walk = line_walk(line, vec2f(frame.size));
+    let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
     for (var i = walk.first; i <= walk.last; i++) {
         let span = line_span(line, walk, i);
         for (var j = span.x; j <= span.y; j++) {
@@ -23,7 +23,7 @@ fn draw_core(yarn: Yarn, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b
             }
             let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
             let depth = line_depth(line, hit.t, orthographic) - nearer;
-            store_key(u32(pixel.y) * frame.size.x + u32(pixel.x), make_key(depth, segment, slot, step));
+            store_key(tile_index(pixel), make_key(depth, segment, slot, step));
         }
     }
 }
@@ -40,12 +40,12 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
     }
     let draw = find_draw(segment);
     let yarn = yarns[draws[draw].yarn];
-    let ends = detail_ends(yarn, draw, segment);
-    if min(ends[0].fibers, ends[1].fibers) >= 1.0 {
+    let s = segment_at(draw, segment);
+    let scale = scale_of(yarn, s);
+    if min(scale.ends[0].fibers, scale.ends[1].fibers) >= 1.0 {
         return;
     }
-    let s = segment_at(draw, segment);
-    let steps = core_steps(yarn, s, segment_radius_pixels(s));
+    let steps = core_steps(yarn, s, scale.radius_pixels);
     for (var ply = 0u; ply < yarn.plies; ply++) {
         var previous = core_end(core_point(yarn, s, yarn_point(s, 0.0), ply, frame.viewer));
         for (var step = 1u; step <= steps; step++) {
@@ -53,7 +53,7 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
             let next = core_end(core_point(yarn, s, yarn_point(s, t), ply, frame.viewer));
             if min(previous.depth, next.depth) > frame.near {
                 let t0 = f32(step - 1u) / f32(steps);
-                draw_core(yarn, ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
+                draw_core(yarn, scale.ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
             }
             previous = next;
         }

@@ -5,7 +5,7 @@
 
 fn draw_line(line: Line, segment: u32, slot: u32, t0: f32, t1: f32) {
     let orthographic = frame.viewer.w > 0.5;
-    let walk = line_walk(line, vec2f(frame.size));
+    let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
     for (var i = walk.first; i <= walk.last; i++) {
         let span = line_span(line, walk, i);
         for (var j = span.x; j <= span.y; j++) {
@@ -19,7 +19,7 @@ fn draw_line(line: Line, segment: u32, slot: u32, t0: f32, t1: f32) {
                 // The fiber is round: its surface is nearer than its centre line.
                 let w = select(depth, 1.0, orthographic);
                 let bulge = sqrt(max(1.0 - hit.offset * hit.offset, 0.0)) * hit.radius * w / frame.pixels_per_unit;
-                store_key(u32(pixel.y) * frame.size.x + u32(pixel.x), make_key(depth - bulge, segment, slot, place));
+                store_key(tile_index(pixel), make_key(depth - bulge, segment, slot, place));
             }
         }
     }
@@ -65,14 +65,10 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let yarn = yarns[draws[draw].yarn];
     let ply = found.y % yarn.plies;
     let first = found.y / yarn.plies * CHUNK;
-    let ends = detail_ends(yarn, draw, segment);
-    let count = max(fiber_count(yarn, ends[0]), fiber_count(yarn, ends[1]));
-    if first >= count {
-        return;
-    }
-    let last = min(first + CHUNK, count);
     let s = segment_at(draw, segment);
-    let steps = fiber_steps(yarn, s, segment_radius_pixels(s));
+    let scale = scale_of(yarn, s);
+    let last = min(first + CHUNK, most_fibers(yarn, scale));
+    let steps = fiber_steps(yarn, s, scale.radius_pixels);
     let first_slot = ply * (yarn.fibers + 1u) + 1u;
     var previous: array<FiberEnd, CHUNK>;
     for (var step = 0u; step <= steps; step++) {
@@ -80,7 +76,7 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         let before = f32(step) / f32(steps) - 1.0 / f32(steps);
         let p = yarn_point(s, t);
         let q = ply_point(yarn, s, p, ply);
-        let detail = mix_detail(ends, t);
+        let detail = mix_detail(scale.ends, t);
         for (var index = first; index < last; index++) {
             let a = previous[index - first];
             let b = fiber_end(yarn, s, detail, p, q, fiber_at(yarn, s.seed, ply, index));

@@ -47,6 +47,8 @@ pub(crate) struct FrameBuffers {
     capacity: Capacity,
     keys: wgpu::Buffer,
     film: [wgpu::Buffer; 3],
+    pixel_list: wgpu::Buffer,
+    resolve_dispatch: wgpu::Buffer,
     staging: wgpu::Buffer,
     segment_work: wgpu::Buffer,
     block_work: wgpu::Buffer,
@@ -117,6 +119,8 @@ impl FrameBuffers {
         Ok(Self {
             keys: empty_storage(gpu, "visibility keys", 8 * capacity.pixels)?,
             film: [film()?, film()?, film()?],
+            pixel_list: empty_storage(gpu, "pixels to resolve", 4 * capacity.pixels)?,
+            resolve_dispatch: empty_storage(gpu, "dispatch of the resolve", 32)?,
             staging: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("read-back"),
                 size: 48 * capacity.pixels,
@@ -141,6 +145,7 @@ impl FrameBuffers {
         [
             &self.keys,
             &self.staging,
+            &self.pixel_list,
             &self.segment_work,
             &self.block_work,
             &self.draws,
@@ -254,6 +259,8 @@ impl<'a> Recorder<'a> {
             (17, &frame.film[0]),
             (18, &frame.film[1]),
             (19, &frame.film[2]),
+            (20, &frame.pixel_list),
+            (21, &frame.resolve_dispatch),
         ])
     }
 
@@ -304,9 +311,10 @@ impl<'a> Recorder<'a> {
         let FrameInput { scene, settings, view, draws, .. } = *self.input;
         let [left, top, width, height] = tile;
         let jitter = self.filter.offset(r2(index, settings.seed, 0));
+        self.uniform.origin = [left, top];
         self.uniform.size = [width, height];
         self.uniform.sample_index = index;
-        self.uniform.pixel_from_render = view.pixel_from_render([left, top], jitter);
+        self.uniform.pixel_from_render = view.pixel_from_render(jitter);
 
         let bounds = draws.bounds;
         let mut first_view_to_draw = 0;
@@ -382,8 +390,15 @@ impl<'a> Recorder<'a> {
         } else {
             encoder.clear_buffer(&self.frame.keys, 0, None);
         }
-        let groups = (width.div_ceil(8), height.div_ceil(8));
-        self.record(&mut encoder, Pass::Resolve, |pass| pass.dispatch_workgroups(groups.0, groups.1, 1));
+        encoder.clear_buffer(&self.frame.resolve_dispatch, 0, None);
+        let (x, y) = fold((width * height).div_ceil(LANES));
+        self.record(&mut encoder, Pass::Classify, |pass| pass.dispatch_workgroups(x, y, 1));
+        if self.uniform.segment_count > 0 {
+            let arguments = &self.frame.resolve_dispatch;
+            self.record(&mut encoder, Pass::SizeLists, |pass| pass.dispatch_workgroups(1, 1, 1));
+            self.record(&mut encoder, Pass::ResolveFibers, |pass| pass.dispatch_workgroups_indirect(arguments, 0));
+            self.record(&mut encoder, Pass::ResolveCores, |pass| pass.dispatch_workgroups_indirect(arguments, 16));
+        }
         self.timer.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
     }
@@ -450,7 +465,10 @@ impl<'a> Recorder<'a> {
                 image.depth[to] = normal[from][3];
                 image.normal[to] = direction(normal[from]);
                 image.tangent[to] = direction(tangent[from]);
-                image.object_id[to] = tangent[from][3] as u32;
+                image.object_id[to] = match tangent[from][3] as usize {
+                    0 => 0,
+                    draw => self.input.scene.objects[draw - 1].id,
+                };
             }
         }
         Ok(())

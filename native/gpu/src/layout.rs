@@ -57,9 +57,8 @@ shared! {
         background: Vec3,
         opaque_background: u32,
         least_w: f32,
-        padding_0: u32,
-        padding_1: u32,
-        padding_2: u32,
+        padding: u32,
+        origin: [u32; 2],
     }
     Draw {
         render_from_object_x: Vec4,
@@ -70,13 +69,13 @@ shared! {
         knot_count: u32,
         yarn: u32,
         material: u32,
-        object_id: u32,
         seed: u32,
         radius_max: f32,
         handedness: f32,
         padding_0: u32,
         padding_1: u32,
         padding_2: u32,
+        padding_3: u32,
     }
     Curve {
         ply_whole: u32,

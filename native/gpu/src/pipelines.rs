@@ -25,7 +25,8 @@ impl Pipelines {
     /// `wide`: one pass with 64-bit atomics, else two with 32-bit ones.
     pub fn new(gpu: &Gpu, wide: bool) -> Result<Self, Error> {
         let stores = if wide { vec![Store::Wide] } else { vec![Store::High, Store::Low] };
-        let mut wanted = vec![Pass::Cull, Pass::Scan, Pass::Shadow, Pass::Resolve];
+        let mut wanted = vec![Pass::Cull, Pass::Scan, Pass::Shadow];
+        wanted.extend([Pass::Classify, Pass::SizeLists, Pass::ResolveFibers, Pass::ResolveCores]);
         wanted.extend(stores.iter().flat_map(|store| [Pass::Fibers(*store), Pass::Cores(*store)]));
         let build = |pass: Pass| {
             let bindings = pass.reflect().map_err(|message| gpu.error(format!("{pass:?}: {message}")))?.bindings;

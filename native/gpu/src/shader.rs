@@ -34,7 +34,8 @@ const SHADING: Files = files![
     "light/sample.wgsl",
     "light/self_shadow.wgsl",
     "passes/lighting.wgsl",
-    "passes/resolve.wgsl",
+    "passes/film.wgsl",
+    "passes/shade.wgsl",
 ];
 
 /// How visibility keys reach memory.
@@ -56,12 +57,15 @@ pub enum Pass {
     Fibers(Store),
     Cores(Store),
     Shadow,
-    Resolve,
+    Classify,
+    SizeLists,
+    ResolveFibers,
+    ResolveCores,
 }
 
 impl Pass {
     #[cfg(test)]
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 13] = [
         Self::Cull,
         Self::Scan,
         Self::Fibers(Store::Wide),
@@ -71,7 +75,10 @@ impl Pass {
         Self::Cores(Store::High),
         Self::Cores(Store::Low),
         Self::Shadow,
-        Self::Resolve,
+        Self::Classify,
+        Self::SizeLists,
+        Self::ResolveFibers,
+        Self::ResolveCores,
     ];
 
     pub fn entry_point(self) -> &'static str {
@@ -81,7 +88,10 @@ impl Pass {
             Self::Fibers(_) => "visibility_fibers",
             Self::Cores(_) => "visibility_cores",
             Self::Shadow => "shadow",
-            Self::Resolve => "resolve",
+            Self::Classify => "classify",
+            Self::SizeLists => "size_lists",
+            Self::ResolveFibers => "resolve_fibers",
+            Self::ResolveCores => "resolve_cores",
         }
     }
 
@@ -98,7 +108,10 @@ impl Pass {
             Self::Fibers(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_fibers.wgsl"]],
             Self::Cores(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_cores.wgsl"]],
             Self::Shadow => vec![SCENE, files!["math/capsule.wgsl", "passes/work.wgsl", "passes/shadow.wgsl"]],
-            Self::Resolve => vec![SCENE, RASTER, SHADING],
+            Self::Classify => vec![SCENE, WORK, files!["passes/key.wgsl", "passes/film.wgsl", "passes/classify.wgsl"]],
+            Self::SizeLists => vec![SCENE, WORK, files!["passes/film.wgsl", "passes/size_lists.wgsl"]],
+            Self::ResolveFibers => vec![SCENE, WORK, RASTER, SHADING, files!["passes/resolve_fibers.wgsl"]],
+            Self::ResolveCores => vec![SCENE, WORK, RASTER, SHADING, files!["passes/resolve_cores.wgsl"]],
         };
         parts.iter().flat_map(|files| files.iter()).map(|(_, text)| *text).collect::<Vec<_>>().join("\n")
     }
@@ -180,14 +193,15 @@ mod tests {
 
     #[test]
     fn shared_structs_match_the_shaders() {
-        let module = Pass::Resolve.reflect().expect("valid").module;
+        let module = Pass::ResolveFibers.reflect().expect("valid").module;
         assert_eq!(mismatches(&module), Vec::<String>::new());
     }
 
     #[test]
     fn a_moved_member_is_noticed() {
-        let source = Pass::Resolve.source();
-        let moved = source.replace("    object_id: u32,\n    seed: u32,", "    seed: u32,\n    object_id: u32,");
+        let source = Pass::ResolveFibers.source();
+        let moved =
+            source.replace("    first_knot: u32,\n    knot_count: u32,", "    knot_count: u32,\n    first_knot: u32,");
         assert_ne!(source, moved);
         let module = naga::front::wgsl::parse_str(&moved).expect("parses");
         assert_eq!(mismatches(&module).len(), 1);

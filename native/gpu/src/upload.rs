@@ -71,7 +71,7 @@ pub(crate) fn empty_storage(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::
     }
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: bytes.max(64).next_multiple_of(16),
+        size: bytes.max(256).next_multiple_of(16),
         usage: wgpu::BufferUsages::STORAGE
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC
@@ -235,7 +235,6 @@ impl SceneBuffers {
                 knot_count: count,
                 yarn: position(&self.kinds, &object.yarn),
                 material: position(&self.materials, &object.material),
-                object_id: object.id,
                 seed: hash_combine(0x00b1_ec70, object.id),
                 radius_max: radius_max as f32,
                 handedness: determinant.signum() as f32,

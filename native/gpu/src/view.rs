@@ -52,7 +52,7 @@ pub(crate) struct View {
     /// World position of the render space's origin.
     pub origin: DVec3,
     pub orthographic: bool,
-    /// Rows x, y, w, z of pixel space for the whole frame, before region and jitter.
+    /// Rows x, y, w, z of pixel space for the whole frame, before the jitter.
     rows: [DVec4; 4],
     pub pixels_per_unit: f64,
     /// Distance of the near plane; −∞ if everything in an orthographic view counts.
@@ -103,11 +103,10 @@ impl View {
         })
     }
 
-    /// Pixel space of a region that begins at `corner`, shifted so that the sample `jitter` off a pixel's centre lands on it.
-    pub fn pixel_from_render(&self, corner: [u32; 2], jitter: [f64; 2]) -> Mat4 {
+    /// Pixel space of the frame, shifted so that the sample `jitter` off a pixel's centre lands on it.
+    pub fn pixel_from_render(&self, jitter: [f64; 2]) -> Mat4 {
         let [x, y, w, z] = self.rows;
-        let x = x - w * (f64::from(corner[0]) + jitter[0]);
-        let y = y - w * (f64::from(corner[1]) + jitter[1]);
+        let (x, y) = (x - w * jitter[0], y - w * jitter[1]);
         DMat4::from_cols(x, y, w, z).transpose().as_mat4()
     }
 

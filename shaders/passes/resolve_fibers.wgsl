@@ -1,0 +1,45 @@
+// How it works: one thread a pixel that shows a fiber. It takes the winning key apart, evaluates that fiber again where the
+// pixel lies on it, shades it, and adds one sample to the film.
+
+@group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
+
+fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel: vec2f) -> Surface {
+    let t = f32(place) / place_scale();
+    let p = yarn_point(s, t);
+    let q = ply_point(yarn, s, p, ply);
+    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, s.seed, ply, index));
+    let width = width_factor(yarn, mix_detail(scale_of(yarn, s).ends, t), index, f);
+    let at = to_pixel(frame.pixel_from_render, f.position);
+    // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.
+    let moved = (frame.pixel_from_render * vec4f(f.velocity, 0.0)).xyz;
+    let on_screen = (moved.xy - at.xy * moved.z) / at.z;
+    let speed = max(length(on_screen), 1e-20);
+    let to_pixel_center = pixel - at.xy;
+    let rest = clamp(dot(to_pixel_center, on_screen) / (speed * speed), -1.0 / place_scale(), 1.0 / place_scale());
+    let across = (to_pixel_center.x * on_screen.y - to_pixel_center.y * on_screen.x) / speed;
+    let offset = across / max(radius_in_pixels(yarn.fiber_radius * p.radius * width, at.z), 1e-20);
+    let center = f.position + f.velocity * rest;
+    let tangent = normalize(f.velocity);
+    let view = direction_to_viewer(frame.viewer, center);
+    // Render-space direction that the offset grows in: (y, -x) of the fiber's direction on the screen.
+    let side = cross(tangent, view);
+    let side_on_screen = frame.pixel_from_render * vec4f(side, 0.0);
+    let grows = dot(side_on_screen.xy - at.xy * side_on_screen.z, vec2f(on_screen.y, -on_screen.x)) >= 0.0;
+    let normal = fiber_normal(tangent, side * select(-1.0, 1.0, grows), view, offset);
+    let position = center + normal * (yarn.fiber_radius * p.radius);
+    return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, position, tangent, normal);
+}
+
+@compute @workgroup_size(64)
+fn resolve_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    let item = folded_index(workgroup, local, RESOLVE_LANES);
+    if item >= resolve_dispatch[FIBER_LIST + 3u] {
+        return;
+    }
+    let index = pixel_list[item];
+    let pixel = frame.origin + vec2u(index % frame.size.x, index / frame.size.x);
+    let winner = winner_at(index);
+    let yarn = yarns[draws[winner.draw].yarn];
+    let s = segment_at(winner.draw, winner.parts.segment);
+    add_surface(index, winner.draw, fiber_surface(s, yarn, winner.ply, winner.slot - 1u, winner.parts.place, vec2f(pixel) + 0.5));
+}
