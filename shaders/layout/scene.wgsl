@@ -3,8 +3,6 @@
 // Spaces: "object" is the curve object's own space, recentred; "render" has the world's axes and its origin at the
 // camera; "pixel" is the whole frame, x to the right, y down, pixel centres at integers + 0.5.
 
-const NO_VIEW: u32 = 0xffffffffu;
-
 struct Frame {
     // (x, y, w, z) of pixel space: pixel = (x / w, y / w), z = distance along the view axis.
     pixel_from_render: mat4x4f,
@@ -30,16 +28,17 @@ struct Frame {
     occlusion_table: u32,
     ambient: vec3f,
     shadow_resolution: u32,
-    // Direction towards this sample's point of the sky, and the shadow view from there; NO_VIEW for none.
-    sky_direction: vec3f,
-    sky_shadow_view: u32,
     background: vec3f,
     opaque_background: u32,
     // Least w at which sizes on the screen are measured: the near plane, or 1 for an orthographic view.
     least_w: f32,
+    // Shadow views from this sample's directions of the sky: the first, and how many.
+    sky_view: u32,
+    sky_view_count: u32,
     padding: u32,
     // First pixel of the tile.
     origin: vec2u,
+    padding_2: vec2u,
 }
 
 // One yarn object, or one instance of it.

@@ -139,10 +139,14 @@ fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -
     return shadow_map(view, outside, SHADOW_BIAS * tube.radius);
 }
 
+// Share of the sky that other yarns leave open, by this sample's directions.
 fn sky_shadow(tube: Tube, position: vec3f) -> f32 {
-    if frame.sky_shadow_view == NO_VIEW {
-        return 1.0;
+    var open = 0.0;
+    for (var i = frame.sky_view; i < frame.sky_view + frame.sky_view_count; i++) {
+        let m = shadow_views[i].texel_from_render;
+        let toward = -vec3f(m[0].w, m[1].w, m[2].w);
+        let outside = position + toward * distance_out_of_tube(tube, position, toward);
+        open += shadow_map(i, outside, SHADOW_BIAS * tube.radius);
     }
-    let way_out = distance_out_of_tube(tube, position, frame.sky_direction);
-    return shadow_map(frame.sky_shadow_view, position + frame.sky_direction * way_out, SHADOW_BIAS * tube.radius);
+    return open / f32(max(frame.sky_view_count, 1u));
 }

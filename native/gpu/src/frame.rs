@@ -23,6 +23,9 @@ const ROW: u32 = 32768;
 /// Most pixels of a tile.
 const TILE_PIXELS: u64 = 1 << 22;
 
+/// Directions of the sky that a picture takes at least.
+const LEAST_SKY_VIEWS: u32 = 8;
+
 /// Bits of a visibility key for the place along a segment, and for depth.
 const PLACE_BITS: u32 = 10;
 const DEPTH_BITS: std::ops::RangeInclusive<u32> = 18..=24;
@@ -37,8 +40,9 @@ pub(crate) struct FrameInput<'a> {
 }
 
 impl FrameInput<'_> {
-    fn has_sky(&self) -> bool {
-        self.scene.ambient != Vec3::ZERO
+    /// Directions of the sky per sample: few samples take more, so that a picture never hangs on one or two.
+    fn sky_views(&self) -> u32 {
+        if self.scene.ambient == Vec3::ZERO { 0 } else { LEAST_SKY_VIEWS.div_ceil(self.settings.samples) }
     }
 }
 
@@ -91,7 +95,7 @@ fn bits_for(count: u32) -> u32 {
 impl FrameBuffers {
     /// Buffers for a picture: the kept ones if they fit.
     pub fn fit(gpu: &Gpu, kept: Option<Self>, input: &FrameInput, region: [u32; 4]) -> Result<Self, Error> {
-        let views = u64::from(lights::most_views(&input.scene.lights, input.has_sky()));
+        let views = u64::from(lights::most_views(&input.scene.lights, input.sky_views()));
         // As many texels as one binding holds.
         let most_texels = gpu.limits.max_storage_buffer_binding_size / 4 / views.max(1);
         let shadow_resolution = input.settings.shadow_resolution.min(most_texels.isqrt() as u32);
@@ -223,7 +227,6 @@ impl<'a> Recorder<'a> {
                 occlusion_table: u32::from(settings.occlusion == Occlusion::Table),
                 ambient: scene.ambient,
                 shadow_resolution: frame.capacity.shadow_resolution,
-                sky_shadow_view: lights::NONE,
                 background,
                 opaque_background: u32::from(!settings.transparent),
                 least_w: if view.orthographic { 1.0 } else { view.near as f32 },
@@ -324,10 +327,10 @@ impl<'a> Recorder<'a> {
             if self.static_lights {
                 first_view_to_draw = lights.views.len() as u32;
             }
-            if self.input.has_sky() {
-                let toward = sphere(r2(index, settings.seed, 1));
-                self.uniform.sky_shadow_view = lights.add_sky(toward, &bounds, resolution);
-                self.uniform.sky_direction = toward.as_vec3();
+            let sky_views = self.input.sky_views();
+            (self.uniform.sky_view, self.uniform.sky_view_count) = (lights.views.len() as u32, sky_views);
+            for direction in index * sky_views..(index + 1) * sky_views {
+                lights.add_sky(sphere(r2(direction, settings.seed, 1)), &bounds, resolution);
             }
             self.gpu.queue.write_buffer(&self.frame.lights, 0, bytemuck::cast_slice(&lights.lights));
             self.gpu.queue.write_buffer(&self.frame.views, 0, bytemuck::cast_slice(&lights.views));

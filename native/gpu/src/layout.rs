@@ -4,7 +4,6 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec4};
 
-pub const NO_VIEW: u32 = u32::MAX;
 /// Set on a knot where a segment begins, beside its 16-bit radius.
 pub const KNOT_BEGINS_SEGMENT: u32 = 0x10000;
 pub const LIGHT_SUN: u32 = 0;
@@ -52,13 +51,14 @@ shared! {
         occlusion_table: u32,
         ambient: Vec3,
         shadow_resolution: u32,
-        sky_direction: Vec3,
-        sky_shadow_view: u32,
         background: Vec3,
         opaque_background: u32,
         least_w: f32,
+        sky_view: u32,
+        sky_view_count: u32,
         padding: u32,
         origin: [u32; 2],
+        padding_2: [u32; 2],
     }
     Draw {
         render_from_object_x: Vec4,

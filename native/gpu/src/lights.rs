@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3, DVec4, Vec3};
 
-use crate::layout::{self, LIGHT_AREA, LIGHT_POINT, LIGHT_SUN, NO_VIEW};
+use crate::layout::{self, LIGHT_AREA, LIGHT_POINT, LIGHT_SUN};
 use crate::sampling::{basis, disc, r2, sphere};
 use crate::view::Bounds;
 use crate::{Cone, Error, Light};
@@ -70,10 +70,9 @@ impl LightSample {
         sample
     }
 
-    /// A further view from the sky, on a quarter of its map: one of many directions needs no sharp shadow; its number.
-    pub fn add_sky(&mut self, toward: DVec3, bounds: &Bounds, resolution: u32) -> u32 {
+    /// A further view from the sky, on a quarter of its map: one of many directions needs no sharp shadow.
+    pub fn add_sky(&mut self, toward: DVec3, bounds: &Bounds, resolution: u32) {
         self.views.push(parallel_view(toward, bounds, f64::from(resolution / 2)));
-        self.views.len() as u32 - 1
     }
 
     fn add(&mut self, light: &Light, origin: DVec3, bounds: &Bounds, resolution: f64, uniform: [f64; 2]) {
@@ -137,10 +136,10 @@ fn cone_cosines(cone: &Cone) -> [f32; 2] {
     [(edge + soft.max(1e-6)) as f32, edge as f32]
 }
 
-/// Most shadow views that one sample of these lights needs.
-pub(crate) fn most_views(lights: &[Light], sky: bool) -> u32 {
+/// Most shadow views that one sample of these lights and so many of the sky needs.
+pub(crate) fn most_views(lights: &[Light], sky_views: u32) -> u32 {
     let of = |light: &Light| if matches!(light, Light::Sun { .. }) { 1 } else { 6 };
-    lights.iter().map(of).sum::<u32>() + u32::from(sky)
+    lights.iter().map(of).sum::<u32>() + sky_views
 }
 
 /// Whether samples of the light differ.
@@ -201,6 +200,3 @@ pub(crate) fn validate(lights: &[Light]) -> Result<(), Error> {
     }
     Ok(())
 }
-
-/// The view number that stands for none.
-pub(crate) const NONE: u32 = NO_VIEW;
