@@ -90,7 +90,7 @@ pub fn run() -> Result<(), Failure> {
     });
 
     // An extension module has no test executable: it takes Python's symbols from the process that loads it.
-    let rust = ["test", "--workspace", "--exclude", "lisle-python"];
+    let rust = ["test", "--workspace", "--exclude", "lisle-python", "--no-fail-fast"];
     report.step("cargo test --workspace", || closing("cargo test", cargo().args(rust)));
     if let Some(python) = &environment {
         report.step("pytest tests/python", || pytest(python, "tests/python", None));
