@@ -1,0 +1,74 @@
+"""The picture at the top of the README: a striped stockinette swatch in folds, two yarns in one scene."""
+
+import sys
+from math import radians, tan
+from pathlib import Path
+
+import lisle
+import numpy as np
+
+out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+out.mkdir(parents=True, exist_ok=True)
+width, height = (int(n) for n in (sys.argv[2] if len(sys.argv) > 2 else "1200x750").split("x"))
+samples = int(sys.argv[3]) if len(sys.argv) > 3 else 32
+
+
+def look_at(eye, target, opening_deg):
+    """A camera at `eye` that looks at `target`, Z up."""
+    back = np.subtract(eye, target) / np.linalg.norm(np.subtract(eye, target))
+    right = np.cross([0, 0, 1], back)
+    right /= np.linalg.norm(right)
+    world_from_camera = np.eye(4)
+    world_from_camera[:3, :4] = np.stack([right, np.cross(back, right), back, eye], axis=1)
+    f, near, far = 1 / tan(radians(opening_deg) / 2), 0.005, 5.0
+    clip_from_camera = np.zeros((4, 4))
+    clip_from_camera[[0, 1, 3], [0, 1, 2]] = f * height / width, f, -1
+    clip_from_camera[2, 2:] = (near + far) / (near - far), 2 * near * far / (near - far)
+    return lisle.Camera.from_matrices(world_from_camera, clip_from_camera, (width, height))
+
+
+def wool(red, green, blue):
+    """Dyed wool: what passes through a fiber is tinted less than what the cloth sends back."""
+    color = np.array([red, green, blue])
+    return lisle.Material.preset("cotton-2").replace(
+        color_r=(0.05, 0.05, 0.05),
+        color_tt=tuple(np.sqrt(color)),
+        beta_r_deg=6,
+        beta_tt_deg=20,
+        diffuse=tuple(color),
+        diffuse_weight=0.6,
+    )
+
+
+# Folds: the flat swatch is bent along X into waves whose arcs keep its length, roughly.
+swatch = lisle.knit_swatch("stockinette", courses=30, wales=22)
+x, y, z = swatch.points.astype(np.float64).T
+slope = 0.035 * np.cos(x * 70 + z * 12) * 70 * 0.2
+points = np.stack([x * 0.93, y + 0.007 * np.sin(x * 70 + z * 12), z], axis=1)
+normal = np.stack([-slope, np.ones_like(slope)], axis=1) / np.sqrt(1 + slope**2)[:, None]
+points[:, 0] += y * normal[:, 0]
+points = points.astype(np.float32)
+
+scene = lisle.Scene(
+    camera=look_at((0.045, -0.11, 0.045), (0.002, 0, 0.004), 22),
+    lights=[
+        lisle.Sun(direction=(1, 0.75, -0.8), strength=6, color=(1, 0.94, 0.86), angle_rad=0.06),
+        lisle.Sun(direction=(-1, 0.25, -0.1), strength=1.5, color=(0.7, 0.82, 1), angle_rad=0.2),
+    ],
+    ambient=(0.42, 0.45, 0.5),
+)
+stripes = {(0.82, 0.70, 0.50): (0, 1, 2, 3), (0.50, 0.055, 0.045): (4, 5, 6, 7), (0.05, 0.12, 0.20): (8, 9)}
+for number, (color, rows) in enumerate(stripes.items()):
+    courses = [c for c in range(len(swatch.offsets) - 1) if c % 10 in rows]
+    spans = [slice(swatch.offsets[c], swatch.offsets[c + 1]) for c in courses]
+    yarns = lisle.Yarns(
+        np.concatenate([points[s] for s in spans]),
+        np.cumsum([0] + [s.stop - s.start for s in spans]),
+        radii=np.concatenate([swatch.radii[s] for s in spans]),
+    )
+    yarn = lisle.Yarn.preset("cotton-1")
+    scene.add(yarns, yarn=yarn, material=wool(*color), object_id=number + 1, name=f"stripe {number}")
+
+image = lisle.Renderer().render(scene, samples=samples)
+image.save(out / "drape.png")
+print(out / "drape.png")
