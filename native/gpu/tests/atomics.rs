@@ -6,7 +6,9 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 use lisle_gpu::{Image, Renderer, Scene, Settings, Shading};
-use support::{curves, draw_with, exact, looking, measure, object, orthographic, perspective, preset, scene, sun, yarns_of};
+use support::{
+    curves, draw_with, exact, looking, measure, object, orthographic, perspective, preset, scene, sun, yarns_of,
+};
 
 const SIZE: [u32; 2] = [120, 80];
 

@@ -39,7 +39,8 @@ fn soft_scene(yarns: &Arc<Yarns>, size: [u32; 2]) -> (Scene, Settings) {
             power,
         },
     ];
-    let settings = Settings { samples: 3, lod_pixels: 1.0, filter_width: 1.5, seed: 5, shadow_resolution: 256, ..exact(size) };
+    let settings =
+        Settings { samples: 3, lod_pixels: 1.0, filter_width: 1.5, seed: 5, shadow_resolution: 256, ..exact(size) };
     (scene, settings)
 }
 

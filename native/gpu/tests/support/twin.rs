@@ -248,7 +248,7 @@ fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, 
     let (a, b) = (view.pixel(chord.a.position), view.pixel(chord.b.position));
     let (ra, rb) = (chord.a.radius * view.pixels_per_unit / wa, chord.b.radius * view.pixels_per_unit / wb);
     // Far enough to know the distance to a silhouette from outside.
-    let reach = ra.max(rb) + 1.0;
+    let reach = ra.max(rb) + 4.0;
     let range = |low: f64, high: f64, from: usize, to: usize| {
         let first = (low - reach - 0.5).ceil().clamp(from as f64, to as f64) as usize;
         first..(((high + reach - 0.5).floor() + 1.0).clamp(first as f64, to as f64) as usize)
@@ -320,6 +320,16 @@ fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, 
             }
         }
     }
+}
+
+/// World position of the first fiber of the first curve, at a segment's parameter.
+pub fn fiber_position(object: &Object, segment: usize, t: f64) -> DVec3 {
+    let (strands, yarn) = (object.yarns.strands(), &*object.yarn);
+    let twist = Twist::new(yarn, strands.total_lengths()[0], strands.reference_radii()[0], strands.closed()[0]);
+    let seed = hash_combine(hash_combine(0x00b1_ec70, object.id), hash_combine(0x11c5_1e00, 0));
+    let at = segments(object, 0)[segment].at(t);
+    let fiber = Fiber { seed, ply: 0, index: 0 };
+    object.world_from_object.transform_point3(fiber_point(yarn, &twist, &FiberTable::new(yarn), &at, fiber).position)
 }
 
 /// Number of distinct fibers that a picture shows.

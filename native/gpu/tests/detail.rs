@@ -1,0 +1,144 @@
+//! Levels of detail: zooming changes nothing by leaps, the covered area stays, and core fibers look like what they stand for.
+
+mod support;
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3};
+use lisle_core::Yarns;
+use lisle_core::yarn::PRESET_NAMES;
+use lisle_gpu::{Camera, Image, Light, Scene, Settings};
+use support::{
+    curves, draw, exact, looking, measure, object, orthographic, perspective, picture, preset, scene, sun, yarns_of,
+};
+
+fn glove() -> Option<Arc<Yarns>> {
+    let curves = lisle_formats::load(support::data("yarns/glove.bcc")?).expect("a glove").into_z_up().curves;
+    Some(Arc::new(Yarns::new(curves, Some(0.1)).expect("valid")))
+}
+
+/// Two suns and the sky: what a level of detail may get wrong shows.
+fn lit(mut scene: Scene) -> Scene {
+    scene.ambient = glam::Vec3::splat(0.3);
+    scene.lights = vec![sun([1.0, 1.0, -1.5], 2.0), sun([-1.5, 0.6, -0.3], 1.0)];
+    scene
+}
+
+const SIZE: [u32; 2] = [160, 120];
+
+/// Camera at step `k` of [`STEPS`], from the whole glove to fibers a few pixels wide.
+fn zoom(k: u32, steps: u32) -> Camera {
+    let (far, near) = (0.6_f64, 0.004_f64);
+    let tangent = far * (near / far).powf(f64::from(k) / f64::from(steps));
+    let target = DVec3::new(0.0, 0.0, 0.0);
+    perspective(looking(target + DVec3::new(0.0, -40.0, 8.0), target), tangent, SIZE, [0.0, 0.0])
+}
+
+/// Steps of the whole zoom, of which every `STRIDE`th neighbour pair is drawn: pairs are the 200 steps, only fewer of them.
+const STEPS: u32 = 200;
+const STRIDE: u32 = 25;
+
+#[test]
+fn zooming_changes_brightness_smoothly_and_keeps_the_area() {
+    let Some(yarns) = glove() else { return };
+    let settings = Settings { samples: 4, filter_width: 1.5, lod_pixels: 1.0, shadow_resolution: 1024, ..exact(SIZE) };
+    let at = |k: u32, lod_pixels: f32| -> Image {
+        let scene = lit(scene(vec![object(&yarns, &preset("cotton-1"))], zoom(k, STEPS)));
+        draw(&scene, &Settings { lod_pixels, ..settings.clone() })
+    };
+    let mut failures = Vec::new();
+    for k in (0..STEPS).step_by(STRIDE as usize) {
+        let [here, next, full] = [at(k, 1.0), at(k + 1, 1.0), at(k, 0.0)];
+        let step = measure::brightness(&next) / measure::brightness(&here) - 1.0;
+        // What the change of view alone does is in the full picture as well.
+        let full_next = at(k + 1, 0.0);
+        let view = measure::brightness(&full_next) / measure::brightness(&full) - 1.0;
+        let area = measure::area(&here) / measure::area(&full) - 1.0;
+        let brightness = measure::brightness(&here) / measure::brightness(&full) - 1.0;
+        println!(
+            "step {k}: brightness {:.4} ({:+.2} % to every fiber), step {:+.2} % (view alone {:+.2} %), area {:.0} px ({:+.2} %), fibers {} of {}",
+            measure::brightness(&here),
+            100.0 * brightness,
+            100.0 * step,
+            100.0 * view,
+            measure::area(&here),
+            100.0 * area,
+            here.statistics.fiber_segments,
+            full.statistics.fiber_segments,
+        );
+        picture::show(&format!("glove {k:03}"), &here);
+        picture::show(&format!("glove {k:03} full"), &full);
+        if step.abs() > 0.01 {
+            failures.push(format!("step {k}: brightness changes by {:+.2} %", 100.0 * step));
+        }
+        if area.abs() > 0.02 {
+            failures.push(format!("step {k}: area differs by {:+.2} %", 100.0 * area));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// A straight yarn of one ply from the side: with single fibers, and with a share of them in the core.
+fn ply(name: &str, lod_pixels: f32, light: Light, radius_pixels: f64) -> Image {
+    const SIZE: [u32; 2] = [240, 24];
+    // Many turns of the twist, so that the mean does not hang on where they begin.
+    let yarns = yarns_of(curves::straight(400.0, 800), false, 1.0);
+    let mut yarn = support::without_flyaways(preset(name));
+    yarn.plies = 1;
+    let camera = orthographic(
+        looking(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO),
+        f64::from(SIZE[1]) / radius_pixels,
+        SIZE,
+        [0.0, 0.0],
+    );
+    let mut scene = scene(vec![object(&yarns, &yarn)], camera);
+    scene.ambient = glam::Vec3::splat(0.2);
+    scene.lights = vec![light];
+    draw(&scene, &Settings { samples: 24, filter_width: 1.5, lod_pixels, ..exact(SIZE) })
+}
+
+#[test]
+fn a_ply_with_a_core_has_the_colour_of_its_fibers() {
+    let mut failures = Vec::new();
+    for name in PRESET_NAMES {
+        for (light_name, light) in [
+            ("from the front", sun([0.2, 1.0, -0.3], 3.0)),
+            ("from above", sun([0.4, 0.2, -1.0], 3.0)),
+            ("no sun, the sky alone", sun([0.3, -1.0, -0.4], 0.0)),
+        ] {
+            let full = ply(name, 0.0, light, 6.0);
+            for lod_pixels in [1.0, 12.0] {
+                let merged = ply(name, lod_pixels, light, 6.0);
+                let [a, b] = [&merged, &full].map(measure::mean_color);
+                let error = ((a - b).abs() / b).max_element();
+                let area = measure::area(&merged) / measure::area(&full) - 1.0;
+                println!(
+                    "{name}, {light_name}, {lod_pixels} px: colour {:+.2} %, area {:+.2} %, {} fibers of {}",
+                    100.0 * (a / b - 1.0).element_sum() / 3.0,
+                    100.0 * area,
+                    merged.statistics.fiber_segments,
+                    full.statistics.fiber_segments
+                );
+                assert!(merged.statistics.fiber_segments < full.statistics.fiber_segments, "{name}: no core");
+                if error > 0.03 {
+                    failures.push(format!("{name}, {light_name}, {lod_pixels} px: {:.2} %", 100.0 * error));
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn a_transform_that_scales_keeps_the_level_of_detail() {
+    // The same picture of a yarn twice as thick, and of the yarn scaled by two.
+    let camera = perspective(looking(DVec3::new(0.3, -6.0, 0.5), DVec3::ZERO), 0.3, SIZE, [0.0, 0.0]);
+    let settings = Settings { lod_pixels: 1.0, ..exact(SIZE) };
+    let thick = object(&yarns_of(curves::wave(6.0, 0.5, 120), false, 0.2), &preset("silk-1"));
+    let mut scaled = object(&yarns_of(curves::wave(3.0, 0.25, 120), false, 0.1), &preset("silk-1"));
+    scaled.world_from_object = DMat4::from_scale(DVec3::splat(2.0));
+    let [a, b] = [thick, scaled].map(|object| draw(&scene(vec![object], camera), &settings));
+    assert_eq!(a.statistics.fiber_segments, b.statistics.fiber_segments);
+    let ratio = measure::brightness(&a) / measure::brightness(&b);
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+}
