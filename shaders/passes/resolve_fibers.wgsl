@@ -7,7 +7,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let t = f32(place) / place_scale();
     let p = yarn_point(s, t);
     let q = ply_point(yarn, s, p, ply);
-    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, s.seed, ply, index));
+    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), index));
     let width = width_factor(yarn, mix_detail(scale_of(yarn, s).ends, t), index, f);
     let at = to_pixel(frame.pixel_from_render, f.position);
     // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.

@@ -68,7 +68,8 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let s = segment_at(draw, segment);
     let scale = scale_of(yarn, s);
     let last = min(first + CHUNK, most_fibers(yarn, scale));
-    let steps = fiber_steps(yarn, s, scale.radius_pixels);
+    let steps = fiber_steps(yarn, s, first, scale.radius_pixels);
+    let seed = ply_seed(s.seed, ply);
     let first_slot = ply * (yarn.fibers + 1u) + 1u;
     var previous: array<FiberEnd, CHUNK>;
     for (var step = 0u; step <= steps; step++) {
@@ -79,7 +80,7 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         let detail = mix_detail(scale.ends, t);
         for (var index = first; index < last; index++) {
             let a = previous[index - first];
-            let b = fiber_end(yarn, s, detail, p, q, fiber_at(yarn, s.seed, ply, index));
+            let b = fiber_end(yarn, s, detail, p, q, fiber_at(yarn, seed, index));
             previous[index - first] = b;
             if step > 0u && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
                 && joined(a.piece, a.period, b.piece, b.period) {

@@ -35,7 +35,7 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     c.across = c.ply.radial * sideways.x + c.ply.tangential * sideways.y;
     c.side = (c.ply.tangential * in_section.x - c.ply.radial * in_section.y) / section_length;
     c.half_width = dot(c.across, c.side);
-    let start = unit_from_hash(hash_combine(hash_combine(s.seed, ply), 0x0ffffff2u));
+    let start = ply_seed(s.seed, ply).angle_turns;
     let psi = atan2(seen_from.y, seen_from.x) / TAU;
     c.turns = yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y) + start - psi;
     c.fiber_rate = TAU * yarn.fiber_sign * p.length_rate * s.turns.y;

@@ -36,9 +36,39 @@ fn width_factor(yarn: Yarn, detail: Detail, index: u32, f: FiberPoint) -> f32 {
 // Chord error bound, pixels.
 const CHORD_ERROR: f32 = 0.25;
 
-// Steps per segment for a curve that winds at `distance` (yarn radii) around the yarn centre by `turning` radians:
-// a chord of an arc of angle a and radius r is off by r a² / 8.
-fn step_count(bend_pixels: f32, turning: f32, distance: f32, radius_pixels: f32, most: u32) -> u32 {
-    let sagitta = bend_pixels + distance * radius_pixels * turning * turning;
-    return clamp(u32(ceil(sqrt(sagitta / (8.0 * CHORD_ERROR)))), 1u, most);
+// Most steps along one segment.
+const MOST_STEPS: u32 = 128u;
+
+// Second derivatives along a segment bound how far a chord is off: c'' / 8 for one step, and a fourth for twice as many.
+// These are bounds on c'', in pixels, of the yarn's centre line (and its parallels, which bend as much more as they lie
+// farther out) and of the windings around it.
+fn bend_pixels(s: Segment, radius_pixels: f32) -> f32 {
+    let bend = max(length(2.0 * s.position.c), length(2.0 * s.position.c + 6.0 * s.position.d));
+    let speed_squared = max(min(dot(s.heading.a, s.heading.a), dot(s.heading.a + s.heading.b + s.heading.c + s.heading.d,
+        s.heading.a + s.heading.b + s.heading.c + s.heading.d)), 1e-30);
+    return bend * (1.0 + s.radius.x * bend / speed_squared) * radius_pixels / max(s.radius.x, 1e-30);
+}
+
+// `amplitude`: of the radial wander, relative to the ply's half axis.
+fn winding_pixels(yarn: Yarn, s: Segment, amplitude: f32, radius_pixels: f32) -> f32 {
+    let radians = TAU * dot(s.length, vec4f(0.0, 1.0, 1.0, 1.0)) * s.turns;
+    let ply = select(0.0, yarn.ply_sign * radians.x, yarn.plies > 1u);
+    let around_ply = ply + yarn.fiber_sign * radians.y;
+    return radius_pixels * (yarn.ply_distance * ply * ply
+        + yarn.ellipse_long * (around_ply * around_ply + amplitude * radians.z * radians.z));
+}
+
+fn steps_for(second_derivative_pixels: f32) -> u32 {
+    return clamp(u32(ceil(sqrt(second_derivative_pixels / (8.0 * CHORD_ERROR)))), 1u, MOST_STEPS);
+}
+
+// Steps of a chunk of fibers that begins at rank `first`: flyaways wander farther.
+fn fiber_steps(yarn: Yarn, s: Segment, first: u32, radius_pixels: f32) -> u32 {
+    let outer = select(1.0, yarn.loop_radius_mean + 2.0 * yarn.loop_radius_deviation, first < yarn.flyaway_fibers);
+    let amplitude = 0.5 * max(outer - yarn.r_min, 0.0);
+    return steps_for(bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, amplitude, radius_pixels));
+}
+
+fn core_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
+    return steps_for(bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, 0.0, radius_pixels));
 }

@@ -35,15 +35,24 @@ struct Fiber {
     hash: u32,
 }
 
-fn make_fiber(seed: u32, ply: u32, index: u32, row: vec3f) -> Fiber {
-    let ply_hash = hash_combine(seed, ply);
-    return Fiber(
-        index,
-        row.x,
-        row.y + unit_from_hash(hash_combine(ply_hash, 0x0ffffff2u)),
-        row.z + unit_from_hash(hash_combine(ply_hash, 0x0ffffff1u)),
-        hash_combine(ply_hash, index),
+// What a ply adds to its fibers: an angle and a phase, so that plies are not copies of each other.
+struct PlySeed {
+    hash: u32,
+    angle_turns: f32,
+    migration_turns: f32,
+}
+
+fn ply_seed(seed: u32, ply: u32) -> PlySeed {
+    let hash = hash_combine(seed, ply);
+    return PlySeed(
+        hash,
+        unit_from_hash(hash_combine(hash, 0x0ffffff2u)),
+        unit_from_hash(hash_combine(hash, 0x0ffffff1u)),
     );
+}
+
+fn make_fiber(ply: PlySeed, index: u32, row: vec3f) -> Fiber {
+    return Fiber(index, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, index));
 }
 
 // The parts of a hair's period: a line never joins the tip to what lies beyond it.
