@@ -83,7 +83,7 @@ fn lines_depart_from_their_curve_by_at_most_a_quarter_of_a_pixel() {
         for zoom in ZOOMS {
             let camera = camera(zoom, target(&case.object));
             let image = draw(&scene(vec![case.object.clone()], camera), &exact(SIZE));
-            let twin = twin::picture(&[case.object.clone()], &camera, SIZE, case.steps);
+            let twin = twin::picture(std::slice::from_ref(&case.object), &camera, SIZE, case.steps);
             let alpha: Vec<bool> = image.combined.iter().map(|c| c[3] > 0.5).collect();
             let (worst, most, count) = departures(&alpha, &twin);
             let covered = twin.iter().filter(|p| p.hit.is_some()).count();
@@ -106,11 +106,11 @@ fn coarse_lines_are_rejected_by_the_same_check() {
     let case = &cases()[0];
     for zoom in [16.0, 64.0, 300.0] {
         let camera = camera(zoom, target(&case.object));
-        let exact = twin::picture(&[case.object.clone()], &camera, SIZE, case.steps);
+        let exact = twin::picture(std::slice::from_ref(&case.object), &camera, SIZE, case.steps);
         // As many lines as keep within a pixel rather than a quarter: half as many as it takes.
         let turning = TAU * 14.0 / 139.0 / 0.12 * 0.045 / 0.369;
         let steps = (0.5 * (zoom * turning * turning / (8.0 * BOUND)).sqrt()).ceil().max(1.0) as u32;
-        let coarse = twin::picture(&[case.object.clone()], &camera, SIZE, (steps / 2).max(1));
+        let coarse = twin::picture(std::slice::from_ref(&case.object), &camera, SIZE, (steps / 2).max(1));
         let alpha: Vec<bool> = coarse.iter().map(|p| p.hit.is_some()).collect();
         let (worst, _, count) = departures(&alpha, &exact);
         println!("radius {zoom} px, {steps} lines: {count} differ, by up to {worst:.3} px");
