@@ -86,6 +86,15 @@ impl Environment {
         })
     }
 
+    /// Unpacks a wheel into a folder for `PYTHONPATH`, unless this very one is there.
+    pub fn unpack(&self, wheel: &Path, site: &Path) -> Result<(), Failure> {
+        folder(site)?;
+        once(&site.join("lisle-wheel"), &digest(wheel)?, || {
+            let (site, wheel) = (site.to_string_lossy(), wheel.to_string_lossy());
+            self.pip("unpacking the wheel", &["--no-deps", "--upgrade", "--target", &site, &wheel])
+        })
+    }
+
     /// Its interpreter.
     pub fn python(&self) -> Command {
         let mut python = command(self.executable("python"));

@@ -1,13 +1,12 @@
 //! Every test there is.
 
-use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
 use crate::blender::Modules;
 use crate::failure::Failure;
 use crate::python::{Environment, any};
-use crate::shell::{cargo, root, say, tee};
+use crate::shell::{cargo, root, say, target, tee};
 use crate::{extension, vulkan, wheel};
 
 /// What the tests of the package need besides it: readers of its files, and the type checker.
@@ -93,7 +92,7 @@ pub fn run() -> Result<(), Failure> {
     let rust = ["test", "--workspace", "--exclude", "lisle-python", "--no-fail-fast"];
     report.step("cargo test --workspace", || closing("cargo test", cargo().args(rust)));
     if let Some(python) = &environment {
-        report.step("pytest tests/python", || pytest(python, "tests/python", None));
+        report.step("pytest tests/python", || pytest(&mut python.python(), "tests/python"));
     }
 
     let (modules, missing) = Modules::all()?;
@@ -106,8 +105,15 @@ pub fn run() -> Result<(), Failure> {
     }
     for module in &modules {
         report.step(&format!("pytest tests/blender in Blender {}", module.release), || {
-            module.environment.install(&wheel)?;
-            pytest(&module.environment, "tests/blender", archive.as_deref())
+            // Not in the environment itself, where it would hide the one that the extension brings.
+            let site = target().join("site");
+            module.environment.unpack(&wheel, &site)?;
+            let mut python = module.environment.python();
+            python.env("PYTHONPATH", &site);
+            if let Some(archive) = &archive {
+                python.env("LISLE_PACKAGE", archive);
+            }
+            pytest(&mut python, "tests/blender")
         });
     }
 
@@ -125,11 +131,9 @@ pub fn run() -> Result<(), Failure> {
     if report.failed.is_empty() { Ok(()) } else { Err(Failure::new("the test", report.failed.join("; "))) }
 }
 
-fn pytest(environment: &Environment, folder: &str, archive: Option<&Path>) -> Result<Vec<String>, Failure> {
-    let mut python = environment.python();
-    python.args(["-m", "pytest", "-p", "no:cacheprovider"]).arg(root().join(folder));
-    if let Some(archive) = archive {
-        python.env("LISLE_PACKAGE", archive);
-    }
-    closing(&format!("pytest {folder}"), &mut python)
+fn pytest(python: &mut Command, folder: &str) -> Result<Vec<String>, Failure> {
+    closing(
+        &format!("pytest {folder}"),
+        python.args(["-m", "pytest", "-p", "no:cacheprovider"]).arg(root().join(folder)),
+    )
 }
