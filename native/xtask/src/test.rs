@@ -36,6 +36,7 @@ impl Report {
             Err(failure) => {
                 eprintln!("{failure}");
                 self.lines.push(format!("FAILED  {name}"));
+                self.lines.extend(failure.to_string().lines().map(|line| format!("          {line}")));
                 self.failed.push(name.to_owned());
             }
         }
