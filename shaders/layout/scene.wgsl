@@ -38,7 +38,9 @@ struct Frame {
     padding: u32,
     // First pixel of the tile.
     origin: vec2u,
-    padding_2: vec2u,
+    // Threads that share a segment's cores; a power of two.
+    core_parts: u32,
+    padding_2: u32,
 }
 
 // One yarn object, or one instance of it.

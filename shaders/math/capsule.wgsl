@@ -17,9 +17,10 @@ struct Line {
 // Where a pixel centre lies relative to a line.
 struct LineHit {
     covered: bool,
-    // Share of the way from a to b, and signed distance over radius (positive to the left of a → b with y down).
+    // Share of the way from a to b.
     t: f32,
-    offset: f32,
+    // How far the surface of a round line stands out of its centre line, in its radii: less past an end, where it is a sphere.
+    bulge: f32,
     radius: f32,
 }
 
@@ -32,10 +33,8 @@ fn line_hit(line: Line, pixel: vec2f) -> LineHit {
     let from_a = pixel - line.a.position;
     let t = clamp(dot(from_a, line.direction) / line.length_squared, 0.0, 1.0);
     let radius = mix(line.a.radius, line.b.radius, t);
-    let distance = length(from_a - t * line.direction);
-    // Past an end, the distance from the line drawn on: the next line of a chain takes over without a notch.
-    let across = (from_a.x * line.direction.y - from_a.y * line.direction.x) * inverseSqrt(line.length_squared);
-    return LineHit(distance <= radius && radius > 0.0, t, clamp(across / max(radius, 1e-20), -1.0, 1.0), radius);
+    let distance = length(from_a - t * line.direction) / max(radius, 1e-20);
+    return LineHit(distance <= 1.0 && radius > 0.0, t, sqrt(max(1.0 - distance * distance, 0.0)), radius);
 }
 
 // Depth along the line; 1 / depth is linear on the screen under perspective.
@@ -86,4 +85,15 @@ fn line_span(line: Line, w: LineWalk, i: i32) -> vec2i {
         i32(ceil(clamp(center - w.reach - 0.5, w.low, w.high))),
         i32(floor(clamp(center + w.reach - 0.5, w.low - 1.0, w.high - 1.0))),
     );
+}
+
+// Threads that share a line: they take columns or rows in turn. `count` is a power of two.
+struct Parts {
+    count: u32,
+    number: u32,
+}
+
+// The first column or row, from `first` on, that is this part's turn.
+fn first_turn(first: i32, parts: Parts) -> i32 {
+    return first + i32((parts.number - u32(first)) & (parts.count - 1u));
 }

@@ -7,3 +7,6 @@ fn to_pixel(pixel_from_render: mat4x4f, position: vec3f) -> vec4f {
     let p = pixel_from_render * vec4f(position, 1.0);
     return vec4f(p.xy / p.z, p.z, p.w);
 }
+
+// Bound on 1 / sin of the angle between a fiber and the view: at its end, a fiber seen from its tip is a sphere.
+const MOST_LEAN: f32 = 4.0;

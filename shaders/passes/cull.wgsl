@@ -19,11 +19,16 @@ fn outside(plane: vec4f, hull: array<vec3f, 4>, radius: f32) -> bool {
     return true;
 }
 
-fn work_of(segment: u32) -> u32 {
+struct Work {
+    items: u32,
+    parts_exponent: u32,
+}
+
+fn work_of(segment: u32) -> Work {
     let draw = find_draw(segment);
     let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
     if (knot_radii[knot].x & KNOT_BEGINS_SEGMENT) == 0u {
-        return 0u;
+        return Work(0u, 0u);
     }
     let p0 = knot_position(draw, knot - 1u);
     let p1 = knot_position(draw, knot);
@@ -38,23 +43,34 @@ fn work_of(segment: u32) -> u32 {
     if outside(rows[0] - rows[2] * low.x, hull, radius) || outside(rows[2] * high.x - rows[0], hull, radius)
         || outside(rows[1] - rows[2] * low.y, hull, radius) || outside(rows[2] * high.y - rows[1], hull, radius)
         || outside(rows[3] - vec4f(0.0, 0.0, 0.0, frame.near), hull, radius) {
-        return 0u;
+        return Work(0u, 0u);
     }
     let scale = scale_between(yarn, p1, knot_radius(draw, knot), p2, knot_radius(draw, knot + 1u));
     let count = most_fibers(yarn, scale);
     atomicAdd(&fibers, yarn.plies * count);
     // At least one item, by which the core pass knows that the segment is in view.
-    return yarn.plies * max(1u, (count + CHUNK - 1u) / CHUNK);
+    let items = yarn.plies * max(1u, (count + CHUNK - 1u) / CHUNK);
+
+    let s = segment_at(draw, segment);
+    let steps = f32(fiber_steps(yarn, s, 0u, scale.radius_pixels));
+    let width = 2.0 * yarn.fiber_radius * scale.radius_pixels + 2.0;
+    let chord = length(p2 - p1) * scale.radius_pixels / max(min(s.radius.x, s.end.w), 1e-30);
+    let length = min(1.5 * chord, 2.0 * f32(frame.size.x + frame.size.y)) + steps * width;
+    var exponent = parts_exponent(f32(CHUNK) * length, width);
+    while (items << exponent) > MOST_ITEMS && exponent > 0u {
+        exponent--;
+    }
+    return Work(items << exponent, exponent);
 }
 
 @compute @workgroup_size(256)
 fn cull(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
     let segment = folded_index(workgroup, local, BLOCK);
-    var work = 0u;
+    var work = Work(0u, 0u);
     if segment < frame.segment_count {
         work = work_of(segment);
     }
-    sums[local] = work;
+    sums[local] = work.items;
     for (var reach = 1u; reach < BLOCK; reach *= 2u) {
         workgroupBarrier();
         var add = 0u;
@@ -66,7 +82,7 @@ fn cull(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index
     }
     workgroupBarrier();
     if segment < frame.segment_count {
-        segment_work[segment] = sums[local];
+        segment_work[segment] = sums[local] | (work.parts_exponent << WORK_BITS);
     }
     if local == BLOCK - 1u {
         atomicAdd(&dispatch[5], atomicLoad(&fibers));

@@ -26,7 +26,12 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let side_on_screen = frame.pixel_from_render * vec4f(side, 0.0);
     let grows = dot(side_on_screen.xy - at.xy * side_on_screen.z, vec2f(on_screen.y, -on_screen.x)) >= 0.0;
     let normal = fiber_normal(tangent, side * select(-1.0, 1.0, grows), view, offset);
-    let position = center + normal * (yarn.fiber_radius * p.radius);
+    // Where the view ray meets the fiber's surface.
+    let radius = yarn.fiber_radius * p.radius * width;
+    let x = clamp(offset, -1.0, 1.0);
+    let sine = length(side);
+    let outward = side * (select(-1.0, 1.0, grows) * x / max(sine, 1e-6));
+    let position = center + radius * (outward + view * (sqrt(1.0 - x * x) * min(1.0 / max(sine, 1e-6), MOST_LEAN)));
     return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, position, tangent, normal);
 }
 

@@ -1,14 +1,15 @@
-// How it works: yarns as thick tubes [WuYuksel2018 §4.1], rasterised like fibers into depth maps, one row of the dispatch
-// for each view. Larger is nearer to the light; 0 is empty.
+// How it works: yarns as thick tubes [WuYuksel2018 §4.1], rasterised like fibers into depth maps, one layer of the
+// dispatch (or some that share the work) for each view. Larger is nearer to the light; 0 is empty.
 
 @group(0) @binding(10) var<storage, read> shadow_views: array<ShadowView>;
 @group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
 
 struct ShadowPass {
     first_view: u32,
+    // Threads that share a segment; a power of two.
+    parts: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 @group(0) @binding(16) var<uniform> shadow_pass: ShadowPass;
 
@@ -18,7 +19,8 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
     if segment >= frame.segment_count {
         return;
     }
-    let view_index = shadow_pass.first_view + workgroup.z;
+    let view_index = shadow_pass.first_view + workgroup.z / shadow_pass.parts;
+    let parts = Parts(shadow_pass.parts, workgroup.z % shadow_pass.parts);
     let view = shadow_views[view_index];
     let draw = find_draw(segment);
     let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
@@ -45,13 +47,13 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
                 LineEnd(next.xy, next.w, next_radius * view.texels_per_unit / next.z),
             );
             let walk = line_walk(line, vec2f(0.0), vec2f(size));
-            for (var i = walk.first; i <= walk.last; i++) {
+            for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
                 let span = line_span(line, walk, i);
                 for (var j = span.x; j <= span.y; j++) {
                     let texel = select(vec2i(j, i), vec2i(i, j), walk.flat);
                     let hit = line_hit(line, vec2f(texel) + 0.5);
                     if hit.covered {
-                        let bulge = sqrt(max(1.0 - hit.offset * hit.offset, 0.0)) * mix(previous_radius, next_radius, hit.t);
+                        let bulge = hit.bulge * mix(previous_radius, next_radius, hit.t);
                         let depth = line_depth(line, hit.t, orthographic) - bulge;
                         let nearness = clamp(1.0 - (depth - view.depth_min) * view.depth_scale, 0.0, 1.0);
                         // Non-negative floats order like their bits.

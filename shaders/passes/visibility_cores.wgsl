@@ -1,13 +1,13 @@
 // How it works: one thread draws the core fibers of one segment. A pixel takes the height of its texel, or nothing in a hole.
 
-fn draw_core(yarn: Yarn, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
+fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
     let orthographic = frame.viewer.w > 0.5;
     let line = make_line(
         LineEnd(a.position, a.depth, a.half_width * yarn.core_half_width),
         LineEnd(b.position, b.depth, b.half_width * yarn.core_half_width),
     );
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    for (var i = walk.first; i <= walk.last; i++) {
+    for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
         let span = line_span(line, walk, i);
         for (var j = span.x; j <= span.y; j++) {
             let pixel = select(vec2i(j, i), vec2i(i, j), walk.flat);
@@ -34,8 +34,8 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
     if segment >= frame.segment_count {
         return;
     }
-    let before = select(0u, segment_work[max(segment, 1u) - 1u], segment % BLOCK != 0u);
-    if segment_work[segment] == before {
+    let before = select(0u, segment_work[max(segment, 1u) - 1u] & WORK_MASK, segment % BLOCK != 0u);
+    if (segment_work[segment] & WORK_MASK) == before {
         return;
     }
     let draw = find_draw(segment);
@@ -53,7 +53,7 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
             let next = core_end(core_point(yarn, s, yarn_point(s, t), ply, frame.viewer));
             if min(previous.depth, next.depth) > frame.near {
                 let t0 = f32(step - 1u) / f32(steps);
-                draw_core(yarn, scale.ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
+                draw_core(yarn, Parts(frame.core_parts, workgroup.z), scale.ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
             }
             previous = next;
         }

@@ -3,10 +3,19 @@
 
 @group(0) @binding(14) var<storage, read> dispatch: array<u32, 8>;
 
-fn draw_line(line: Line, segment: u32, slot: u32, t0: f32, t1: f32) {
+// A view ray meets the surface of a fiber that leans towards the viewer this much farther from its centre line.
+fn line_lean(line: Line, orthographic: bool) -> f32 {
+    let w = select(line.a.depth, 1.0, orthographic);
+    let across = sqrt(line.length_squared) * w / frame.pixels_per_unit;
+    let along = line.b.depth - line.a.depth;
+    return min(sqrt(1.0 + along * along / max(across * across, 1e-30)), MOST_LEAN);
+}
+
+fn draw_line(line: Line, parts: Parts, segment: u32, slot: u32, t0: f32, t1: f32) {
     let orthographic = frame.viewer.w > 0.5;
+    let lean = line_lean(line, orthographic);
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    for (var i = walk.first; i <= walk.last; i++) {
+    for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
         let span = line_span(line, walk, i);
         for (var j = span.x; j <= span.y; j++) {
             let pixel = select(vec2i(j, i), vec2i(i, j), walk.flat);
@@ -18,7 +27,7 @@ fn draw_line(line: Line, segment: u32, slot: u32, t0: f32, t1: f32) {
                 let place = u32(mix(t0, t1, share) * place_scale() + 0.5);
                 // The fiber is round: its surface is nearer than its centre line.
                 let w = select(depth, 1.0, orthographic);
-                let bulge = sqrt(max(1.0 - hit.offset * hit.offset, 0.0)) * hit.radius * w / frame.pixels_per_unit;
+                let bulge = hit.bulge * lean * hit.radius * w / frame.pixels_per_unit;
                 store_key(tile_index(pixel), make_key(depth - bulge, segment, slot, place));
             }
         }
@@ -26,7 +35,13 @@ fn draw_line(line: Line, segment: u32, slot: u32, t0: f32, t1: f32) {
 }
 
 // The segment whose work contains an item, and how far into it the item is.
-fn find_segment(item: u32) -> vec2u {
+struct Found {
+    segment: u32,
+    item: u32,
+    parts_exponent: u32,
+}
+
+fn find_segment(item: u32) -> Found {
     var low = 0u;
     var high = (frame.segment_count + BLOCK - 1u) / BLOCK;
     while high - low > 1u {
@@ -43,14 +58,14 @@ fn find_segment(item: u32) -> vec2u {
     var last = min(first + BLOCK, frame.segment_count) - 1u;
     while first < last {
         let middle = (first + last) / 2u;
-        if segment_work[middle] > rest {
+        if (segment_work[middle] & WORK_MASK) > rest {
             last = middle;
         } else {
             first = middle + 1u;
         }
     }
-    let before = select(0u, segment_work[max(first, 1u) - 1u], first > low * BLOCK);
-    return vec2u(first, rest - before);
+    let before = select(0u, segment_work[max(first, 1u) - 1u] & WORK_MASK, first > low * BLOCK);
+    return Found(first, rest - before, segment_work[first] >> WORK_BITS);
 }
 
 @compute @workgroup_size(64)
@@ -60,11 +75,14 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         return;
     }
     let found = find_segment(item);
-    let segment = found.x;
+    let segment = found.segment;
     let draw = find_draw(segment);
     let yarn = yarns[draws[draw].yarn];
-    let ply = found.y % yarn.plies;
-    let first = found.y / yarn.plies * CHUNK;
+    // Items run over plies first, then over the threads that share a line, then over chunks.
+    let ply = found.item % yarn.plies;
+    let turn = found.item / yarn.plies;
+    let parts = Parts(1u << found.parts_exponent, turn & ((1u << found.parts_exponent) - 1u));
+    let first = (turn >> found.parts_exponent) * CHUNK;
     let s = segment_at(draw, segment);
     let scale = scale_of(yarn, s);
     let last = min(first + CHUNK, most_fibers(yarn, scale));
@@ -84,7 +102,7 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
             previous[index - first] = b;
             if step > 0u && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
                 && joined(a.piece, a.period, b.piece, b.period) {
-                draw_line(make_line(a.line, b.line), segment, first_slot + index, before, t);
+                draw_line(make_line(a.line, b.line), parts, segment, first_slot + index, before, t);
             }
         }
     }

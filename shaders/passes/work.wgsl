@@ -6,6 +6,19 @@
 const BLOCK: u32 = 256u;
 // Fibers of a ply that one thread draws: they share the yarn's and the ply's frame.
 const CHUNK: u32 = 8u;
+// Pixels that one thread visits, about: a software driver ends a thread after 65535 turns of its loops, and on a GPU long
+// threads make the others wait. Larger lines are shared by a power of two of threads, which take turns along them.
+const VISITS: f32 = 24000.0;
+// Items of one segment, at most, and what the items of a block's segments up to one of them take of its word; above it is
+// the number of sharing threads, as a power of two.
+const MOST_ITEMS: u32 = 65535u;
+const WORK_BITS: u32 = 24u;
+const WORK_MASK: u32 = 0xffffffu;
+
+// Power of two of threads that share lines of that length and width in all, pixels.
+fn parts_exponent(length: f32, width: f32) -> u32 {
+    return u32(clamp(ceil(log2(max(length * width / VISITS, 1.0))), 0.0, 12.0));
+}
 // Threads of one workgroup of the visibility pass.
 const LANES: u32 = 64u;
 // Workgroups in one row of a folded dispatch; a device takes at most 65535.

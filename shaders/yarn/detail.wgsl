@@ -62,10 +62,16 @@ fn steps_for(second_derivative_pixels: f32) -> u32 {
     return clamp(u32(ceil(sqrt(second_derivative_pixels / (8.0 * CHORD_ERROR)))), 1u, MOST_STEPS);
 }
 
-// Steps of a chunk of fibers that begins at rank `first`: flyaways wander farther.
+// Steps of a chunk of fibers that begins at rank `first`. Among flyaways a hair bends most; the bound is that of a typical
+// one, so that the chord of a shorter or longer one may be off by more.
 fn fiber_steps(yarn: Yarn, s: Segment, first: u32, radius_pixels: f32) -> u32 {
-    let outer = select(1.0, yarn.loop_radius_mean + 2.0 * yarn.loop_radius_deviation, first < yarn.flyaway_fibers);
-    let amplitude = 0.5 * max(outer - yarn.r_min, 0.0);
+    var amplitude = 0.5 * (1.0 - yarn.r_min);
+    if first < yarn.flyaway_fibers {
+        let loops = 0.5 * (yarn.loop_radius_mean + 2.0 * yarn.loop_radius_deviation - yarn.r_min);
+        let rise = max(yarn.tip_min_mean + yarn.tip_span_mean - 1.0, 0.0);
+        let width = clamp(max(abs(yarn.width_mean), 0.8 * yarn.width_deviation), 0.04, 0.45);
+        amplitude = max(amplitude, max(loops, 2.0 * rise / (TAU * TAU * width * width)));
+    }
     return steps_for(bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, amplitude, radius_pixels));
 }
 

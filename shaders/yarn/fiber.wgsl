@@ -87,7 +87,7 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
             profile.flyaway = 1.0;
         } else if choice < yarn.loop_chance + yarn.hair_chance {
             let span = yarn.width_mean + yarn.width_deviation * normal_from_hash(hash_combine(hash, 2u));
-            let width = clamp(abs(span), 0.02, 0.45);
+            let width = clamp(abs(span), 0.04, 0.45);
             let direction = select(-1.0, 1.0, span >= 0.0);
             let along = (phase - 0.5) * direction / width;
             if along >= 0.0 && along <= 1.0 {
@@ -95,11 +95,12 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
                     + yarn.tip_span_mean + yarn.tip_span_deviation * normal_from_hash(hash_combine(hash, 4u));
                 let rise = max(tip, fiber.radius) - fiber.radius;
                 let turns = yarn.turns_mean + yarn.turns_deviation * normal_from_hash(hash_combine(hash, 5u));
+                let astray = direction * (turns - width / periods_per_turn);
                 return Profile(
-                    fiber.radius + rise * along,
-                    rise * direction / width,
-                    direction * along * turns - (phase - 0.5) / periods_per_turn,
-                    turns / width - 1.0 / periods_per_turn,
+                    fiber.radius + rise * along * along,
+                    2.0 * along * rise * direction / width,
+                    astray * along * along,
+                    2.0 * along * astray * direction / width,
                     1.0,
                     1.0 - along * along * along * along,
                     PIECE_HAIR,

@@ -13,7 +13,7 @@ use crate::shader::Pass;
 use crate::timing::Timer;
 use crate::upload::{Draws, SceneBuffers, empty_storage};
 use crate::view::View;
-use crate::{Error, Image, Occlusion, Progress, Scene, Settings, Shading, Statistics};
+use crate::{Error, Image, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
 const BLOCK: u32 = 256;
@@ -169,6 +169,34 @@ fn fold(workgroups: u32) -> (u32, u32) {
     (workgroups.min(ROW), workgroups.div_ceil(ROW))
 }
 
+/// Threads that share lines of so many pixels' length and width, with `steps` joints, inside of `most` pixels: a power of two.
+///
+/// As `parts_exponent` in `shaders/passes/work.wgsl`, from a bound on all lines of a pass.
+fn parts(length: f64, width: f64, steps: f64, most: f64) -> u32 {
+    const VISITS: f64 = 24_000.0;
+    const MOST: u32 = 64;
+    let visits = (length.min(most) + steps * width) * width;
+    ((visits / VISITS).ceil().clamp(1.0, f64::from(MOST)) as u32).next_power_of_two()
+}
+
+/// Threads that share a segment's cores: they are drawn while a fiber is thinner than the level of detail's threshold.
+fn core_parts(input: &FrameInput, most: u32) -> u32 {
+    let of = |object: &Object| {
+        let yarn = &object.yarn;
+        let radius = f64::from(input.settings.lod_pixels) * yarn.outer_radius() / (2.0 * yarn.fiber_radius);
+        let width = 2.2 * yarn.ellipse_long.max(yarn.ellipse_short) / yarn.outer_radius() * radius + 2.0;
+        let plies = f64::from(yarn.plies);
+        parts(plies * input.draws.slenderness * radius, width, 16.0 * plies, 2.0 * plies * f64::from(most))
+    };
+    input.scene.objects.iter().map(of).max().unwrap_or(1)
+}
+
+/// Least w that a shadow view measures sizes at: 1 for a parallel one.
+fn nearest_w(view: &layout::ShadowView) -> f64 {
+    let parallel = view.texel_from_render.row(2) == glam::Vec4::W;
+    if parallel { 1.0 } else { f64::from(view.near).max(1e-30) }
+}
+
 /// Records and runs the passes of one picture.
 pub(crate) struct Recorder<'a> {
     gpu: &'a Gpu,
@@ -316,6 +344,7 @@ impl<'a> Recorder<'a> {
         let jitter = self.filter.offset(r2(index, settings.seed, 0));
         self.uniform.origin = [left, top];
         self.uniform.size = [width, height];
+        self.uniform.core_parts = core_parts(self.input, width + height);
         self.uniform.sample_index = index;
         self.uniform.pixel_from_render = view.pixel_from_render(jitter);
 
@@ -334,9 +363,8 @@ impl<'a> Recorder<'a> {
             }
             self.gpu.queue.write_buffer(&self.frame.lights, 0, bytemuck::cast_slice(&lights.lights));
             self.gpu.queue.write_buffer(&self.frame.views, 0, bytemuck::cast_slice(&lights.views));
-            let views = lights.views.len() as u32 - first_view_to_draw;
             self.write_uniform();
-            self.shadows(first_view_to_draw, views);
+            self.shadows(&lights.views[first_view_to_draw as usize..], first_view_to_draw);
             self.static_lights = !scene.lights.iter().any(lights::is_soft);
         } else {
             self.write_uniform();
@@ -358,17 +386,23 @@ impl<'a> Recorder<'a> {
         self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") })
     }
 
-    /// Depth maps of `count` shadow views.
-    fn shadows(&mut self, first: u32, count: u32) {
+    /// Depth maps of views, `first` being the number of the first.
+    fn shadows(&mut self, views: &[layout::ShadowView], first: u32) {
+        let count = views.len() as u32;
         if count == 0 {
             return;
         }
-        self.gpu.queue.write_buffer(&self.frame.shadow_uniform, 0, bytemuck::cast_slice(&[first, 0, 0, 0]));
+        let resolution = f64::from(self.frame.capacity.shadow_resolution);
+        let draws = self.input.draws;
+        let radius = |view: &layout::ShadowView| draws.radius_max * f64::from(view.texels_per_unit) / nearest_w(view);
+        let radius = views.iter().map(radius).fold(0.0, f64::max).min(resolution);
+        let parts = parts(draws.slenderness * radius, 2.0 * radius + 2.0, 8.0, 2.0 * resolution);
+        self.gpu.queue.write_buffer(&self.frame.shadow_uniform, 0, bytemuck::cast_slice(&[first, parts, 0, 0]));
         let mut encoder = self.encoder();
         let bytes = 4 * u64::from(self.frame.capacity.shadow_resolution).pow(2);
         encoder.clear_buffer(&self.frame.shadow_depths, bytes * u64::from(first), Some(bytes * u64::from(count)));
         let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
-        self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count));
+        self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count * parts));
         self.timer.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
     }
@@ -385,8 +419,9 @@ impl<'a> Recorder<'a> {
             }
             encoder.clear_buffer(&self.frame.keys, 0, None);
             let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
+            let parts = self.uniform.core_parts;
             for store in self.pipelines.stores.clone() {
-                self.record(&mut encoder, Pass::Cores(store), |pass| pass.dispatch_workgroups(x, y, 1));
+                self.record(&mut encoder, Pass::Cores(store), |pass| pass.dispatch_workgroups(x, y, parts));
                 let arguments = &self.frame.dispatch;
                 self.record(&mut encoder, Pass::Fibers(store), |pass| pass.dispatch_workgroups_indirect(arguments, 0));
             }

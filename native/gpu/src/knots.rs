@@ -19,6 +19,8 @@ pub(crate) struct RestKnots {
     pub radii: Vec<[u32; 2]>,
     pub curves: Vec<layout::Curve>,
     pub radius_max: f64,
+    /// The first words of `radii`, which stay when those have gone to the GPU.
+    radii_codes: Vec<u32>,
     /// For every padded knot, the strand's knot that it copies.
     source: Vec<u32>,
     /// Padded knots that continue an open curve by reflection, with the neighbours they are made from (inner, next).
@@ -34,6 +36,8 @@ pub(crate) struct MovingKnots {
     pub center: DVec3,
     /// Of the centre lines, relative to `center`.
     pub bounds: Bounds,
+    /// Longest distance between neighbouring knots, in yarn radii there.
+    pub slenderness: f64,
 }
 
 /// Turns over a whole curve: whole part and rest.
@@ -60,12 +64,14 @@ impl RestKnots {
             radii: Vec::with_capacity(padded),
             curves: Vec::with_capacity(strands.closed().len()),
             radius_max,
+            radii_codes: Vec::new(),
             source: Vec::with_capacity(padded),
             reflected: Vec::new(),
         };
         for curve in 0..strands.closed().len() {
             rest.add_curve(strands, yarn, curve);
         }
+        rest.radii_codes = rest.radii.iter().map(|[code, _]| *code).collect();
         rest
     }
 
@@ -116,6 +122,18 @@ impl RestKnots {
         self.source.len()
     }
 
+    fn slenderness(&self, positions: &[f32]) -> f64 {
+        let at = |knot: usize| Vec3::from_slice(&positions[3 * knot..]);
+        let ratio = |knot: usize| {
+            if self.radii_codes[knot] & KNOT_BEGINS_SEGMENT == 0 {
+                return 0.0;
+            }
+            let radius = |k: usize| (self.radii_codes[k] & 0xffff).max(1) as f32 / 65535.0 * self.radius_max as f32;
+            at(knot).distance(at(knot + 1)) / radius(knot).max(radius(knot + 1))
+        };
+        f64::from((0..self.len()).map(ratio).fold(0.0, f32::max))
+    }
+
     pub fn moving(&self, strands: &Strands) -> MovingKnots {
         let mut bounds = Bounds::EMPTY;
         strands.positions().iter().for_each(|p| bounds.include(Vec3::from(*p).as_dvec3()));
@@ -129,6 +147,7 @@ impl RestKnots {
                 positions[at(end)] = 2.0 * positions[at(inner)] - positions[at(next)];
             }
         }
+        let slenderness = self.slenderness(&positions);
         let normals = strands.normals();
         let frame = |(knot, length): (&u32, &u32)| [*length, pack_unit_vector(normals[*knot as usize])];
         MovingKnots {
@@ -136,6 +155,7 @@ impl RestKnots {
             frames: self.source.iter().zip(&self.lengths).map(frame).collect(),
             center,
             bounds: Bounds { min: bounds.min - center, max: bounds.max - center },
+            slenderness,
         }
     }
 }

@@ -58,7 +58,8 @@ shared! {
         sky_view_count: u32,
         padding: u32,
         origin: [u32; 2],
-        padding_2: [u32; 2],
+        core_parts: u32,
+        padding_2: u32,
     }
     Draw {
         render_from_object_x: Vec4,

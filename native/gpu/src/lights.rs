@@ -56,7 +56,9 @@ fn point_view(position: DVec3, axis: DVec3, tangent: f64, bounds: &Bounds, resol
     let w = axis.extend(-axis.dot(position));
     let row = |a: DVec3| (a * scale).extend(-a.dot(position) * scale) + w * (0.5 * resolution);
     let far = bounds.corners().into_iter().map(|c| c.distance(position)).fold(0.0, f64::max);
-    let near = 1e-4 * far;
+    // Nothing is nearer than the box of all yarns.
+    let inside = position.clamp(bounds.min, bounds.max);
+    let near = (0.99 * inside.distance(position)).max(1e-4 * far);
     shadow_view([row(x), row(y), w, w], scale, near, (near, far))
 }
 

@@ -1,5 +1,6 @@
 //! The scene's yarns on the GPU: what is static stays there from frame to frame.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use bytemuck::Pod;
@@ -24,6 +25,7 @@ struct Upload {
     first_knot: u32,
     center: DVec3,
     bounds: Bounds,
+    slenderness: f64,
 }
 
 /// Whether two shapes are frames of the same rest shape.
@@ -54,6 +56,9 @@ pub(crate) struct Draws {
     pub bounds: Bounds,
     /// Most slots (fibers and cores) of any yarn.
     pub most_slots: u32,
+    /// Largest yarn radius, render space, and longest segment in radii.
+    pub radius_max: f64,
+    pub slenderness: f64,
 }
 
 /// A storage buffer that holds `data`, or a little if that is empty.
@@ -88,16 +93,23 @@ fn intern<T: PartialEq>(list: &mut Vec<Arc<T>>, item: &Arc<T>) -> usize {
     })
 }
 
-/// The distinct (curves, kind of yarn) of a scene, and which of them each object is.
-fn distinct(scene: &Scene) -> (Vec<(&Arc<Yarns>, &Arc<Yarn>)>, Vec<usize>) {
-    let mut sets: Vec<(&Arc<Yarns>, &Arc<Yarn>)> = Vec::new();
-    let mut by_address = std::collections::HashMap::<(*const Yarns, *const Yarn), usize>::new();
+/// Curves and the kind of yarn they are made of.
+#[derive(Clone, Copy)]
+struct Set<'a> {
+    yarns: &'a Arc<Yarns>,
+    yarn: &'a Arc<Yarn>,
+}
+
+/// The distinct sets of a scene, and which of them each object is; `kinds` takes the kinds of yarn.
+fn distinct<'a>(scene: &'a Scene, kinds: &mut Vec<Arc<Yarn>>) -> (Vec<Set<'a>>, Vec<usize>) {
+    let mut sets = Vec::new();
+    let mut known = HashMap::<(*const Yarns, usize), usize>::new();
     let which = scene
         .objects
         .iter()
-        .map(|object| {
-            *by_address.entry((Arc::as_ptr(&object.yarns), Arc::as_ptr(&object.yarn))).or_insert_with(|| {
-                sets.push((&object.yarns, &object.yarn));
+        .map(|Object { yarns, yarn, .. }| {
+            *known.entry((Arc::as_ptr(yarns), intern(kinds, yarn))).or_insert_with(|| {
+                sets.push(Set { yarns, yarn });
                 sets.len() - 1
             })
         })
@@ -113,19 +125,14 @@ impl SceneBuffers {
         scene: &Scene,
         cache: &mut TableCache,
     ) -> Result<(Self, Vec<usize>), Error> {
-        let (sets, which) = distinct(scene);
-        let mut kinds = Vec::new();
-        let mut materials = Vec::new();
+        let (mut kinds, mut materials) = (Vec::new(), Vec::new());
+        let (sets, which) = distinct(scene, &mut kinds);
         for object in &scene.objects {
-            intern(&mut kinds, &object.yarn);
             intern(&mut materials, &object.material);
         }
         let known = previous.filter(|p| {
             p.uploads.len() == sets.len()
-                && p.uploads
-                    .iter()
-                    .zip(&sets)
-                    .all(|(u, (yarns, yarn))| same_rest(&u.yarns, yarns) && *u.yarn == ***yarn)
+                && p.uploads.iter().zip(&sets).all(|(u, set)| same_rest(&u.yarns, set.yarns) && u.yarn == *set.yarn)
         });
         let mut buffers = match known {
             Some(mut buffers) => {
@@ -147,12 +154,12 @@ impl SceneBuffers {
         Ok((buffers, which))
     }
 
-    fn upload(gpu: &Gpu, sets: &[(&Arc<Yarns>, &Arc<Yarn>)]) -> Result<Self, Error> {
+    fn upload(gpu: &Gpu, sets: &[Set]) -> Result<Self, Error> {
         let mut first_knot = 0_u32;
         let (mut radii, mut curves) = (Vec::new(), Vec::new());
         let (mut positions, mut frames) = (Vec::new(), Vec::new());
         let mut uploads = Vec::with_capacity(sets.len());
-        for (yarns, yarn) in sets {
+        for Set { yarns, yarn } in sets {
             let mut knots = RestKnots::new(yarns.strands(), yarn);
             let first_curve = curves.len() as u32;
             curves.append(&mut knots.curves);
@@ -168,6 +175,7 @@ impl SceneBuffers {
                 first_knot,
                 center: moving.center,
                 bounds: moving.bounds,
+                slenderness: moving.slenderness,
             });
             first_knot += length;
         }
@@ -189,8 +197,8 @@ impl SceneBuffers {
     }
 
     /// The next frame of known yarns: positions and frames, and only of those that moved.
-    fn move_knots(&mut self, gpu: &Gpu, sets: &[(&Arc<Yarns>, &Arc<Yarn>)]) {
-        for (upload, (yarns, _)) in self.uploads.iter_mut().zip(sets) {
+    fn move_knots(&mut self, gpu: &Gpu, sets: &[Set]) {
+        for (upload, Set { yarns, .. }) in self.uploads.iter_mut().zip(sets) {
             let moved = !Arc::ptr_eq(&upload.yarns, yarns) && !std::ptr::eq(upload.yarns.points(), yarns.points());
             upload.yarns = Arc::clone(yarns);
             if moved {
@@ -200,6 +208,7 @@ impl SceneBuffers {
                 gpu.queue.write_buffer(&self.frames, 8 * first, bytemuck::cast_slice(&moving.frames));
                 self.uploaded_bytes += 20 * upload.knots.len() as u64;
                 (upload.center, upload.bounds) = (moving.center, moving.bounds);
+                upload.slenderness = moving.slenderness;
             }
         }
     }
@@ -214,7 +223,14 @@ impl SceneBuffers {
 
     /// The scene's objects as draws of these buffers; `which` is what [`Self::update`] gave.
     pub fn draws(&self, scene: &Scene, which: &[usize], origin: DVec3) -> Result<Draws, Error> {
-        let mut draws = Draws { items: Vec::new(), segment_count: 0, bounds: Bounds::EMPTY, most_slots: 1 };
+        let mut draws = Draws {
+            items: Vec::new(),
+            segment_count: 0,
+            bounds: Bounds::EMPTY,
+            most_slots: 1,
+            radius_max: 0.0,
+            slenderness: 0.0,
+        };
         for (object, upload) in scene.objects.iter().zip(which.iter().map(|w| &self.uploads[*w])) {
             let render_from_object =
                 DMat4::from_translation(-origin) * object.world_from_object * DMat4::from_translation(upload.center);
@@ -243,6 +259,8 @@ impl SceneBuffers {
             draws.segment_count = draws.segment_count.checked_add(count).ok_or_else(|| {
                 Error::input("scene", "more than 4.29 billion control points, instances counted each")
             })?;
+            draws.radius_max = draws.radius_max.max(radius_max);
+            draws.slenderness = draws.slenderness.max(upload.slenderness);
             let reach = radius_max * bound(&object.yarn);
             draws.bounds.merge(&upload.bounds.transformed(&render_from_object).grown(reach));
             draws.most_slots = draws.most_slots.max(object.yarn.plies * (object.yarn.fibers_per_ply + 1));

@@ -1,6 +1,7 @@
 use std::f64::consts::TAU;
 
-use lisle_core::yarn::{FiberTable, Yarn};
+use lisle_core::sampling::{hash_combine, unit_from_hash};
+use lisle_core::yarn::{FiberTable, HAIR_WIDTH, Yarn};
 use rayon::prelude::*;
 
 /// Height that marks a texel where no fiber is seen.
@@ -18,7 +19,7 @@ const WIDTH: usize = 128;
 /// s = 1, so that one turn tiles. Sample them with the nearest texel: neighbours may be different fibers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoreFiber {
-    /// Layer l shows the fibers of rank ≥ ⌊l m / layers⌋ of the fiber table; rank 0 is the outermost.
+    /// Layer l shows the fibers of rank ≥ ⌊l m / layers⌋ of the fiber table; rank 0 is the outermost. Those astray are left out.
     pub layers: usize,
     /// Rows; row k is at u = (k + ½) / length, in turns.
     pub length: usize,
@@ -31,6 +32,17 @@ pub struct CoreFiber {
     /// `[layer][u][v]`: height h of the visible surface ([`HOLE`] where there is none), offset across the fiber in [−1, 1] (towards +v),
     /// and dh/dθ, dv/dθ of the visible fiber's centre line, θ the bundle's angle in radians.
     pub texels: Vec<[f32; 4]>,
+}
+
+/// Which fibers of a ply the textures show: flyaways are drawn one by one while they are outside of the ply, so that only as many of
+/// the fibers that fly away are here as stay in it at a time.
+fn stays(yarn: &Yarn, fiber: usize) -> bool {
+    let (loops, hairs) = yarn.flyaway_chances();
+    let span = yarn.flyaways.hair_z_span;
+    // Mean of |x| for a normal variate about (nearly) zero.
+    let width = (span.deviation * (2.0 / std::f64::consts::PI).sqrt()).max(span.mean.abs()) / yarn.migration_period();
+    let away = loops + hairs * width.clamp(HAIR_WIDTH.0, HAIR_WIDTH.1);
+    fiber >= yarn.flyaway_fibers() as usize || unit_from_hash(hash_combine(0x57a7_1c0e, fiber as u32)) >= away
 }
 
 /// A fiber's centre in the normalised section and its rates per radian of the bundle.
@@ -71,7 +83,7 @@ impl CoreFiber {
             let mut layers = vec![texels; LAYERS];
             for layer in (0..LAYERS).rev() {
                 let end = if layer + 1 == LAYERS { count } else { first_rank(layer + 1) };
-                for fiber in first_rank(layer)..end {
+                for fiber in (first_rank(layer)..end).filter(|fiber| stays(yarn, *fiber)) {
                     draw(yarn, &center(yarn, table, fiber, u), fiber_radius, half_width, &mut texels);
                 }
                 layers[layer] = texels;
@@ -156,7 +168,8 @@ mod tests {
             let u = (k as f64 + 0.5) / LENGTH as f64;
             let v = ((j as f64 + 0.5) / WIDTH as f64 * 2.0 - 1.0) * f64::from(texture.half_width);
             let mut expected = [f64::from(HOLE), 0.0, 0.0, 0.0];
-            for fiber in layer * table.radius.len() / LAYERS..table.radius.len() {
+            let ranks = layer * table.radius.len() / LAYERS..table.radius.len();
+            for fiber in ranks.filter(|fiber| stays(&yarn, *fiber)) {
                 let at = center(&yarn, &table, fiber, u);
                 let offset = (v - at.v) / half_span(&yarn, &at, fiber_radius);
                 let height = at.h + fiber_radius * (1.0 - offset * offset).max(0.0).sqrt();
@@ -196,7 +209,7 @@ mod tests {
         let covered = (0..RAYS).filter(|_| {
             // A viewer at angle ψ sees the bundle turned by −ψ; the migration does not turn with the view.
             let (u, view, v) = (random.unit(), random.unit(), (2.0 * random.unit() - 1.0) * half_width);
-            (0..table.radius.len()).any(|fiber| {
+            (0..table.radius.len()).filter(|fiber| stays(yarn, *fiber)).any(|fiber| {
                 let seen = FiberTable {
                     radius: vec![table.radius[fiber]],
                     angle_turns: vec![table.angle_turns[fiber] - view],

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use lisle_core::yarn::{Variate, Yarn, acceptance, radial_density};
+use lisle_core::yarn::{HAIR_WIDTH, Variate, Yarn, acceptance, radial_density};
 
 /// Relative distance from the ply centre up to which the profile goes. Longer hairs are rare and left out beyond it.
 pub const PROFILE_REACH: f64 = 2.5;
@@ -14,9 +14,6 @@ const STARTS: usize = 128;
 const PHASES: u32 = 96;
 const UNIFORMS: u32 = 4;
 const VARIATES: u32 = UNIFORMS * UNIFORMS * UNIFORMS;
-
-/// Narrowest and widest hair, as a share of its period; as in the procedural yarn.
-const HAIR_WIDTH: (f64, f64) = (0.02, 0.45);
 
 /// Fibers per area of a ply's unit disc, for one fiber, in rings of equal area up to [`PROFILE_REACH`].
 ///
@@ -134,7 +131,7 @@ fn add_hairs(yarn: &Yarn, start: f64, share: f64, rings: &mut Rings) {
         for k in 0..PHASES {
             let share = share / f64::from(VARIATES * PHASES);
             let along = (f64::from(k) + 0.5) / f64::from(PHASES);
-            rings.add(start + rise * along, share * width);
+            rings.add(start + rise * along * along, share * width);
             let phase = 0.5 + width + (1.0 - width) * along;
             let wave = 0.5 - 0.5 * (2.0 * PI * phase).cos();
             rings.add(start * (yarn.r_min + (1.0 - yarn.r_min) * wave), share * (1.0 - width));

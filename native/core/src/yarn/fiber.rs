@@ -131,12 +131,13 @@ struct Profile {
 }
 
 /// Narrowest and widest hair, as a share of its period.
-const HAIR_WIDTH: (f64, f64) = (0.02, 0.45);
+pub const HAIR_WIDTH: (f64, f64) = (0.04, 0.45);
 
 /// `phase` runs from 0 to 1 over a period, whose ends lie at the least radius: types join there to first order.
 ///
 /// Eq. 2 with its phase moved by half a period. A hair leaves at the middle, where a migrating fiber is
-/// outermost, from that radius rather than from R_min^hair, so that it stays attached; its tip lies at R_min^hair + R_span.
+/// outermost, from that radius rather than from R_min^hair, so that it stays attached, and in a parabola rather than a line, so that
+/// it has no kink; its tip lies at R_min^hair + R_span after an angle of theta_span.
 fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, phase: f64, hash: u32) -> Profile {
     let wave = 0.5 - 0.5 * (TAU * phase).cos();
     let wave_rate = PI * (TAU * phase).sin();
@@ -168,11 +169,12 @@ fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, ph
             let tip = (variate(fly.hair_r_min, 3) + variate(fly.hair_r_span, 4)) / yarn.mean_axis();
             let rise = tip.max(fiber_radius) - fiber_radius;
             let turns = variate(fly.hair_theta_span, 5) / TAU;
+            let astray = direction * (turns - width / periods_per_turn);
             return Profile {
-                radius: fiber_radius + rise * along,
-                radius_rate: rise * direction / width,
-                angle_turns: direction * along * turns - (phase - 0.5) / periods_per_turn,
-                angle_rate: turns / width - 1.0 / periods_per_turn,
+                radius: fiber_radius + rise * along * along,
+                radius_rate: 2.0 * along * rise * direction / width,
+                angle_turns: astray * along * along,
+                angle_rate: 2.0 * along * astray * direction / width,
                 kind: FiberType::Hair,
             };
         }

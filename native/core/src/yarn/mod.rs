@@ -7,7 +7,7 @@ mod presets;
 mod table;
 
 pub use curve::{Knot, Segment, YarnPoint};
-pub use fiber::{Fiber, FiberPoint, FiberType, PlyPoint, Twist, fiber_point, ply_point};
+pub use fiber::{Fiber, FiberPoint, FiberType, HAIR_WIDTH, PlyPoint, Twist, fiber_point, ply_point};
 pub use parameters::{Flyaways, Variate, Yarn, YarnError};
 pub use presets::PRESET_NAMES;
 pub use table::{FiberTable, acceptance, radial_density};
