@@ -90,7 +90,8 @@ pub fn run() -> Result<(), Failure> {
     });
 
     // An extension module has no test executable: it takes Python's symbols from the process that loads it.
-    let rust = ["test", "--workspace", "--exclude", "lisle-python", "--no-fail-fast"];
+    // Optimised, as the wheel is: one build of the renderer, and tests in f64 that end.
+    let rust = ["test", "--release", "--workspace", "--exclude", "lisle-python", "--no-fail-fast"];
     report.step("cargo test --workspace", || closing("cargo test", cargo().args(rust)));
     if let Some(python) = &environment {
         report.step("pytest tests/python", || pytest(&mut python.python(), "tests/python"));
