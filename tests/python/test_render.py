@@ -110,6 +110,11 @@ def test_size_overrules_the_camera(draw):
     assert draw(size=(40, 30)).size == (40, 30)
 
 
+def test_a_picture_too_large_for_memory_is_refused(draw):
+    with pytest.raises(lisle.InputError, match="more than"):
+        draw(size=(65000, 65000))
+
+
 def test_an_opaque_background_is_the_ambient_light(draw):
     image = draw(transparent=False, ambient=(0.25, 0.5, 0.75))
     assert (image["alpha"] == 1).all()
@@ -123,9 +128,7 @@ def test_a_region_is_that_part_of_the_whole(draw):
     assert part.size == (x1 - x0, y1 - y0)
     for name in ("combined", "depth", "object_id"):
         cut = whole[name][HEIGHT - y1 : HEIGHT - y0, x0:x1]
-        # Coordinates are rounded differently in a region: a ray may just miss what it just met.
-        differs = ~np.isclose(part[name], cut, rtol=1e-3, atol=1e-4).reshape(y1 - y0, x1 - x0, -1).all(axis=2)
-        assert differs.mean() < 0.01, name
+        np.testing.assert_array_equal(part[name], cut, err_msg=name)
     beside = whole["combined"][HEIGHT - y1 : HEIGHT - y0, x0 + 1 : x1 + 1]
     assert not np.allclose(part["combined"], beside, atol=1e-2)
 
@@ -156,7 +159,7 @@ def test_defaults_draw(renderer, swatch):
 
 def test_statistics(draw, swatch):
     statistics = draw().statistics
-    assert statistics["segments"] >= len(swatch.points) - len(swatch)
+    assert statistics["segments"] == len(swatch.points) - len(swatch)
     assert statistics["fiber_segments"] > 0
     assert statistics["gpu_bytes"] >= statistics["knot_bytes"] > 0
     assert statistics["adapter"]

@@ -327,7 +327,7 @@ impl<'a> Recorder<'a> {
         }
         image.statistics = Statistics {
             adapter: self.gpu.info.name.clone(),
-            segments: u64::from(self.input.draws.segment_count),
+            segments: self.input.draws.real_segments,
             fiber_segments: self.fiber_segments,
             knot_bytes: self.input.buffers.knot_bytes() + self.frame.segment_work.size(),
             gpu_bytes: self.input.buffers.knot_bytes() + self.input.buffers.table_bytes() + self.frame.bytes(),

@@ -118,6 +118,11 @@ impl RestKnots {
         }
     }
 
+    /// Segments that are drawn.
+    pub fn segment_count(&self) -> usize {
+        self.radii_codes.iter().filter(|code| **code & KNOT_BEGINS_SEGMENT != 0).count()
+    }
+
     pub fn len(&self) -> usize {
         self.source.len()
     }

@@ -94,6 +94,9 @@ impl Renderer {
     }
 }
 
+/// Pixels of one picture: with all passes, 6 GiB of memory.
+const MOST_PIXELS: u64 = 1 << 27;
+
 /// Checks scene and settings; the region to draw: left, top, width, height.
 fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
     let [width, height] = settings.size;
@@ -105,6 +108,9 @@ fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
     let [left, top, w, h] = region;
     if w == 0 || h == 0 || left.saturating_add(w) > width || top.saturating_add(h) > height {
         return invalid("region", format!("{w}×{h} at ({left}, {top}) is not inside of {width}×{height} pixels"));
+    }
+    if u64::from(w) * u64::from(h) > MOST_PIXELS {
+        return invalid("region", format!("{w}×{h} pixels are more than {MOST_PIXELS}: draw them in parts"));
     }
     if settings.samples == 0 {
         return invalid("samples", "0: expected at least 1".into());

@@ -26,6 +26,7 @@ struct Upload {
     center: DVec3,
     bounds: Bounds,
     slenderness: f64,
+    segment_count: u64,
 }
 
 /// Whether two shapes are frames of the same rest shape.
@@ -51,7 +52,10 @@ pub(crate) struct SceneBuffers {
 /// The instances to draw.
 pub(crate) struct Draws {
     pub items: Vec<layout::Draw>,
+    /// Padded knots, each of which may begin a segment; the shaders number segments by them.
     pub segment_count: u32,
+    /// Segments that there are.
+    pub real_segments: u64,
     /// Render space, with the yarns' thickness and flyaways.
     pub bounds: Bounds,
     /// Most slots (fibers and cores) of any yarn.
@@ -168,6 +172,7 @@ impl SceneBuffers {
             positions.append(&mut moving.positions);
             frames.append(&mut moving.frames);
             let length = knots.len() as u32;
+            let segment_count = knots.segment_count() as u64;
             uploads.push(Upload {
                 yarns: Arc::clone(yarns),
                 yarn: Arc::clone(yarn),
@@ -176,6 +181,7 @@ impl SceneBuffers {
                 center: moving.center,
                 bounds: moving.bounds,
                 slenderness: moving.slenderness,
+                segment_count,
             });
             first_knot += length;
         }
@@ -226,6 +232,7 @@ impl SceneBuffers {
         let mut draws = Draws {
             items: Vec::new(),
             segment_count: 0,
+            real_segments: 0,
             bounds: Bounds::EMPTY,
             most_slots: 1,
             radius_max: 0.0,
@@ -259,6 +266,7 @@ impl SceneBuffers {
             draws.segment_count = draws.segment_count.checked_add(count).ok_or_else(|| {
                 Error::input("scene", "more than 4.29 billion control points, instances counted each")
             })?;
+            draws.real_segments += upload.segment_count;
             draws.radius_max = draws.radius_max.max(radius_max);
             draws.slenderness = draws.slenderness.max(upload.slenderness);
             let reach = radius_max * bound(&object.yarn);
