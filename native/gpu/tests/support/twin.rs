@@ -5,7 +5,7 @@ use std::collections::HashSet;
 
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 use lisle_core::sampling::{hash_combine, normal_from_hash, unit_from_hash};
-use lisle_core::yarn::{Fiber, FiberTable, FiberType, Knot, Segment, Twist, Yarn, fiber_point};
+use lisle_core::yarn::{Fiber, FiberTable, FiberType, HAIR_WIDTH, Knot, Segment, Twist, Yarn, fiber_point};
 use lisle_gpu::{Camera, Object};
 use rayon::prelude::*;
 
@@ -138,7 +138,7 @@ fn taper(yarn: &Yarn, twist: &Twist, table: &FiberTable, length: f64, fiber: Fib
     }
     let span = yarn.flyaways.hair_z_span;
     let span = span.mean + span.deviation * normal_from_hash(hash_combine(hash, 2));
-    let width = (span.abs() / yarn.migration_period()).clamp(0.02, 0.45);
+    let width = (span.abs() / yarn.migration_period()).clamp(HAIR_WIDTH.0, HAIR_WIDTH.1);
     let along = (phase.fract() - 0.5) * 1.0_f64.copysign(span) / width;
     if along < 0.0 {
         (1.0, Piece::Ply, period)
