@@ -103,7 +103,7 @@ def add_camera_and_lights():
 
     camera = bpy.data.cameras.new("Camera")
     camera.lens, camera.clip_start = 70, 0.01
-    scene.camera = add("Camera", camera, (0.09, -0.27, 0.07))
+    scene.camera = add("Camera", camera, (0.075, -0.225, 0.06))
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.energy, sun.angle, sun.color = 5, 0.05, (1, 0.95, 0.88)
     add("Sun", sun, (-0.5, -1, 1.1))
