@@ -2,7 +2,8 @@
 
 `python -m pytest tests/blender` with the Python of any supported `bpy` (4.5, 5.0, 5.2). A test marked
 `blender` is run by a child pytest: Blender may crash in it, keeps global state, and is known to hang at exit, so the
-child leaves with `os._exit` and reports through a file.
+child leaves with `os._exit` and reports through a file. Blender then cannot remove its own folder for temporary
+files: every child gets a TMPDIR of its own, which the parent removes.
 
 Markers: `blender` uses the stand-in for the native module in `fake_lisle/`, which records what it is given;
 `blender("wheel")` uses the real `lisle`, and is skipped where it is not installed.
@@ -13,6 +14,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -53,15 +55,20 @@ def _run_child(item, native):
     place = (str(item.path), item.location[1] or 0)
     if native == "wheel" and importlib.util.find_spec("lisle") is None:
         return "skipped", (*place, "Skipped: the native module 'lisle' is not installed"), 0.0
-    report = Path(item.config._tmp_path_factory.mktemp("report")) / "outcome.jsonl"
     function = item.nodeid.partition("::")[2]
-    environment = os.environ | {"LISLE_TEST_REPORT": str(report), "LISLE_TEST_NATIVE": native}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"{item.path}::{function}"]
-    try:
-        child = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=TIMEOUT_S, check=False)
-    except subprocess.TimeoutExpired as error:
-        return "failed", f"no end after {TIMEOUT_S} s\n{error.stdout}", float(TIMEOUT_S)
-    lines = report.read_text().splitlines() if report.exists() else []
+    with tempfile.TemporaryDirectory(prefix="lisle-test-") as temporary:
+        report = Path(temporary) / "outcome.jsonl"
+        environment = os.environ | {
+            "LISLE_TEST_REPORT": str(report), "LISLE_TEST_NATIVE": native, "TMPDIR": temporary,
+        }  # fmt: skip
+        try:
+            child = subprocess.run(
+                command, capture_output=True, text=True, env=environment, timeout=TIMEOUT_S, check=False
+            )
+        except subprocess.TimeoutExpired as error:
+            return "failed", f"no end after {TIMEOUT_S} s\n{error.stdout}", float(TIMEOUT_S)
+        lines = report.read_text().splitlines() if report.exists() else []
     phases = [json.loads(line) for line in lines]
     if [phase["when"] for phase in phases] != ["setup", "call", "teardown"]:
         skipped = [phase for phase in phases if phase["outcome"] == "skipped"]

@@ -60,7 +60,7 @@ def test_installs_draws_and_uninstalls(tmp_path):
     user, picture = tmp_path / "user", tmp_path / "picture.png"
     user.mkdir()
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    environment["BLENDER_USER_RESOURCES"] = str(user)
+    environment["BLENDER_USER_RESOURCES"] = environment["TMPDIR"] = str(user)
     script = LIFE.format(package=os.path.abspath(package), user=str(user), picture=str(picture))
     result = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, env=environment, check=False, timeout=300

@@ -1,6 +1,7 @@
 """Installs an extension from disk into this Blender's settings and enables it: `-- ARCHIVE MODULE`."""
 
 import os
+import shutil
 import sys
 
 import bpy
@@ -13,6 +14,7 @@ if module not in bpy.context.preferences.addons:
     print(f"{module} is not enabled after its installation", file=sys.stderr)
     os._exit(1)
 bpy.ops.wm.save_userpref()
-# As a module, Blender may hang at exit.
+# As a module, Blender may hang at exit: leave without it, and remove what it would.
+shutil.rmtree(bpy.app.tempdir, ignore_errors=True)
 sys.stdout.flush()
 os._exit(0)
