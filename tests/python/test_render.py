@@ -101,6 +101,7 @@ def test_settings_change_the_picture(draw):
         dict(lod_pixels=0.0),
         dict(seed=7),
         dict(filter_width=0.0),
+        dict(shadow_resolution=64),
         dict(samples=3),
     ):
         assert not np.array_equal(draw(**{"samples": 2, **change})["combined"], plain), change
@@ -177,6 +178,7 @@ def test_statistics(draw, swatch):
         (dict(occlusion="none"), "occlusion"),
         (dict(lod_pixels=-1.0), "lod_pixels"),
         (dict(filter_width=math.nan), "filter_width"),
+        (dict(shadow_resolution=8), "shadow_resolution"),
         (dict(region=(0, 0, 0, 10)), "region"),
         (dict(region=(0, 0, WIDTH + 1, 10)), "region"),
         (dict(region=(1, 2, 3)), "region"),

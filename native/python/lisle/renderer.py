@@ -56,6 +56,7 @@ class Renderer:
         transparent: bool = True,
         lod_pixels: float = 1.0,
         filter_width: float = 1.5,
+        shadow_resolution: int = 2048,
         seed: int = 0,
         progress: Progress | None = None,
     ) -> Image:
@@ -76,6 +77,7 @@ class Renderer:
             transparent: leaves the background transparent; otherwise it is the ambient radiance.
             lod_pixels: fibers thinner than this are merged; 0 draws every fiber.
             filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
+            shadow_resolution: texels along one side of a shadow map, 16 to 16384.
             seed: of the sample sequence.
             progress: called now and then with the finished fraction; returning False cancels.
 
@@ -100,6 +102,7 @@ class Renderer:
                 "transparent": transparent,
                 "lod_pixels": lod_pixels,
                 "filter_width": filter_width,
+                "shadow_resolution": shadow_resolution,
                 "seed": seed,
             },
             progress,

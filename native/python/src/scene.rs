@@ -58,6 +58,7 @@ pub struct SettingsItems {
     transparent: bool,
     lod_pixels: f32,
     filter_width: f32,
+    shadow_resolution: u32,
     seed: u32,
 }
 
@@ -141,8 +142,8 @@ impl SettingsItems {
             transparent: self.transparent,
             lod_pixels: self.lod_pixels,
             filter_width: self.filter_width,
+            shadow_resolution: self.shadow_resolution,
             seed: self.seed,
-            ..Settings::default()
         })
     }
 }

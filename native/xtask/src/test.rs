@@ -118,6 +118,11 @@ pub fn run() -> Result<(), Failure> {
             pytest(&mut python, "tests/blender")
         });
     }
+    if let (Some(python), Some(archive)) = (&environment, &archive) {
+        report.step("pytest tests/window in the blender on PATH, if there is one", || {
+            pytest(python.python().env("LISLE_PACKAGE", archive), "tests/window")
+        });
+    }
 
     say("Summary");
     for line in &report.lines {
