@@ -8,6 +8,11 @@
 
 mod angles;
 mod azimuthal;
+#[cfg(test)]
+mod battery;
+mod fiber;
+mod frame;
+mod lobe;
 mod longitudinal;
 mod material;
 mod multiple;
@@ -18,6 +23,8 @@ mod tables;
 
 pub use angles::FiberAngles;
 pub use azimuthal::{von_mises, von_mises_scale};
+pub use fiber::{FiberScattering, PhysicalFiber, ScatteringSample, SimpleFiber};
+pub use frame::{FiberFrame, distance_inside};
 pub use longitudinal::{gaussian, gaussian_integral};
 pub use material::{MATERIAL_NAMES, Material, MaterialError};
 pub use multiple::cloth_color;

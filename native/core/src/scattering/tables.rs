@@ -42,8 +42,8 @@ fn ambient_integral(theta_o: f64, beta: f64, weight: impl Fn(f64) -> f64) -> f64
 }
 
 /// Linear interpolation at |θ|; angles beyond π/2 read the last entry.
-fn lookup(table: &[f64; TABLE_SIZE], theta_rad: f64) -> f64 {
-    let last = TABLE_SIZE - 1;
+pub(super) fn lookup(table: &[f64], theta_rad: f64) -> f64 {
+    let last = table.len() - 1;
     let x = (theta_rad.abs() / FRAC_PI_2).min(1.0) * last as f64;
     let k = (x as usize).min(last - 1);
     table[k] + (table[k + 1] - table[k]) * (x - k as f64)
