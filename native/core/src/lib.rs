@@ -4,7 +4,9 @@ pub mod curve;
 mod error;
 pub mod sampling;
 pub mod scattering;
+pub mod scene;
 pub mod strands;
+pub mod view;
 pub mod yarn;
 
 pub use curve::{Basis, Curves, KnotMode, Nurbs};

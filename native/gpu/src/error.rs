@@ -58,3 +58,9 @@ impl Error {
         Self::Input { what: what.into(), reason: reason.into() }
     }
 }
+
+impl From<lisle_core::scene::SceneError> for Error {
+    fn from(error: lisle_core::scene::SceneError) -> Self {
+        Self::Input { what: error.what, reason: error.reason }
+    }
+}

@@ -9,16 +9,17 @@ mod layout;
 mod lights;
 mod pipelines;
 mod renderer;
-mod sampling;
 mod scene;
 mod shader;
 mod tables;
 mod timing;
 mod upload;
-mod view;
 
 pub use device::{AdapterInfo, adapters};
 pub use error::Error;
 pub use image::{Image, Statistics};
+pub use lisle_core::scene::{Camera, Cone, Light, Object, Scene};
 pub use renderer::{Progress, Renderer};
 pub use scene::*;
+
+use lisle_core::{sampling, view};

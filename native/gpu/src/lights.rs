@@ -1,11 +1,13 @@
 //! Lights and the views their shadows are drawn from, one sample at a time.
 
-use glam::{DMat4, DVec3, DVec4, Vec3};
+use glam::{DMat4, DVec3, DVec4};
+
+pub(crate) use lisle_core::scene::validate_lights as validate;
 
 use crate::layout::{self, LIGHT_AREA, LIGHT_POINT, LIGHT_SUN};
 use crate::sampling::{basis, disc, r2, sphere};
 use crate::view::Bounds;
-use crate::{Cone, Error, Light};
+use crate::{Cone, Light};
 
 /// What one sample of the lights looks like on the GPU.
 #[derive(Default)]
@@ -151,54 +153,4 @@ pub(crate) fn is_soft(light: &Light) -> bool {
         Light::Point { radius, .. } => radius > 0.0,
         Light::Area { .. } => true,
     }
-}
-
-/// Checks every light.
-pub(crate) fn validate(lights: &[Light]) -> Result<(), Error> {
-    for (number, light) in lights.iter().enumerate() {
-        let finite = |color: Vec3| color.is_finite() && color.cmpge(Vec3::ZERO).all();
-        let reason = match *light {
-            Light::Sun { direction, irradiance, angle_rad } => {
-                if !direction.is_finite() || direction.length() < 1e-12 {
-                    Some("the direction is zero or not finite")
-                } else if !(0.0..=std::f64::consts::PI).contains(&angle_rad) {
-                    Some("the angle is not between 0 and π")
-                } else if !finite(irradiance) {
-                    Some("the irradiance is negative or not finite")
-                } else {
-                    None
-                }
-            }
-            Light::Point { position, power, radius, cone } => {
-                if !position.is_finite() {
-                    Some("the position is not finite")
-                } else if !finite(power) {
-                    Some("the power is negative or not finite")
-                } else if !(radius.is_finite() && radius >= 0.0) {
-                    Some("the radius is negative or not finite")
-                } else if cone.is_some_and(|c| !c.direction.is_finite() || c.direction.length() < 1e-12) {
-                    Some("the cone's direction is zero or not finite")
-                } else if cone.is_some_and(|c| !(0.0..=std::f64::consts::PI).contains(&c.angle_rad)) {
-                    Some("the cone's angle is not between 0 and π")
-                } else {
-                    None
-                }
-            }
-            Light::Area { world_from_light, size, power, .. } => {
-                if !world_from_light.is_finite() || world_from_light.z_axis.length() < 1e-12 {
-                    Some("the transform is not finite or flat")
-                } else if !finite(power) {
-                    Some("the power is negative or not finite")
-                } else if !size.iter().all(|s| s.is_finite() && *s >= 0.0) {
-                    Some("the size is negative or not finite")
-                } else {
-                    None
-                }
-            }
-        };
-        if let Some(reason) = reason {
-            return Err(Error::input(format!("light {number}"), reason));
-        }
-    }
-    Ok(())
 }

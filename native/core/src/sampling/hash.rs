@@ -1,5 +1,3 @@
-//! Integer hashes that Rust and WGSL (`shaders/math/hash.wgsl`) evaluate to the same bits.
-
 /// Mixes 32 bits (a bijection with low bias, two multiply–xorshift rounds).
 pub fn hash_u32(mut x: u32) -> u32 {
     x ^= x >> 16;

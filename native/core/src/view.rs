@@ -1,37 +1,45 @@
-//! From a scene's camera and lights to projections in render space: the world's axes, the camera at the origin.
+//! From a scene's camera to pixels and rays in render space: the world's axes, the camera at the origin.
 
-use glam::{DMat4, DVec3, DVec4, Mat4, Vec4, Vec4Swizzles};
+use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec4, Vec4Swizzles};
 
-use crate::{Camera, Error};
+use crate::scene::{Camera, SceneError};
 
 /// Axis-aligned box in render space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Bounds {
+pub struct Bounds {
+    /// Least coordinates.
     pub min: DVec3,
+    /// Greatest coordinates.
     pub max: DVec3,
 }
 
 impl Bounds {
+    /// Holds nothing.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
+    /// Whether it holds nothing.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
 
+    /// Grows to hold a point.
     pub fn include(&mut self, point: DVec3) {
         self.min = self.min.min(point);
         self.max = self.max.max(point);
     }
 
+    /// Grows to hold another box.
     pub fn merge(&mut self, other: &Self) {
         self.min = self.min.min(other.min);
         self.max = self.max.max(other.max);
     }
 
+    /// The box with so much more on every side.
     pub fn grown(&self, by: f64) -> Self {
         Self { min: self.min - by, max: self.max + by }
     }
 
+    /// Its eight corners.
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|i| DVec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), self.max, self.min))
     }
@@ -48,23 +56,30 @@ impl Bounds {
 
 /// The camera in render space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
+pub struct View {
     /// World position of the render space's origin.
     pub origin: DVec3,
+    /// Whether all rays are parallel.
     pub orthographic: bool,
     /// Rows x, y, w, z of pixel space for the whole frame, before the jitter.
     rows: [DVec4; 4],
+    /// Pixels per unit of length at distance 1 along the view axis (perspective) or everywhere (orthographic).
     pub pixels_per_unit: f64,
     /// Distance of the near plane; −∞ if everything in an orthographic view counts.
     pub near: f64,
+    /// Distance of the far plane; ∞ if there is none.
     pub far: f64,
     /// Direction towards the viewer and 1 (orthographic), or the origin and 0.
     pub viewer: Vec4,
 }
 
 impl View {
-    pub fn new(camera: &Camera, size: [u32; 2]) -> Result<Self, Error> {
-        let invalid = |reason: &str| Error::input("camera", reason);
+    /// The view of a frame of `size` pixels.
+    ///
+    /// # Errors
+    /// [`SceneError`] for matrices that are not finite, have no inverse or no near plane.
+    pub fn new(camera: &Camera, size: [u32; 2]) -> Result<Self, SceneError> {
+        let invalid = |reason: &str| SceneError { what: "camera".into(), reason: reason.into() };
         if !camera.world_from_camera.is_finite() || !camera.clip_from_camera.is_finite() {
             return Err(invalid("a matrix has an entry that is not finite"));
         }
@@ -116,5 +131,65 @@ impl View {
         let near = depths.into_iter().fold(f64::INFINITY, f64::min).max(self.near);
         let far = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(self.far);
         (near, far.max(near + 1e-6 * near.abs().max(1e-6)))
+    }
+    /// Where the ray through a place on the frame (pixels from the top left) lies at distance 0 along the view axis, and how far it
+    /// moves per unit of that distance: a distance along the ray in units of its direction is a depth.
+    pub fn ray(&self, pixel: [f64; 2]) -> (DVec3, DVec3) {
+        let [x, y, w, z] = self.rows;
+        let (a, b) = (x - w * pixel[0], y - w * pixel[1]);
+        let inverse = DMat3::from_cols(a.xyz(), b.xyz(), z.xyz()).transpose().inverse();
+        (inverse * -DVec3::new(a.w, b.w, z.w), inverse.z_axis)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: [u32; 2] = [320, 200];
+
+    fn views() -> [View; 2] {
+        let world_from_camera = DMat4::from_translation(DVec3::new(3.0, -7.0, 2.0)) * DMat4::from_rotation_x(1.1);
+        let perspective = DMat4::from_cols_array_2d(&[
+            [2.0, 0.0, 0.0, 0.0],
+            [0.0, 3.2, 0.0, 0.0],
+            [0.3, -0.2, -1.002, -1.0],
+            [0.0, 0.0, -0.2002, 0.0],
+        ]);
+        let orthographic = DMat4::from_cols_array_2d(&[
+            [0.5, 0.0, 0.0, 0.0],
+            [0.0, 0.8, 0.0, 0.0],
+            [0.0, 0.0, -0.02, 0.0],
+            [0.3, -0.2, -1.002, 1.0],
+        ]);
+        [perspective, orthographic].map(|clip_from_camera| {
+            View::new(&Camera { world_from_camera, clip_from_camera }, SIZE).expect("a valid camera")
+        })
+    }
+
+    #[test]
+    fn a_ray_meets_its_pixel_at_every_depth() {
+        for view in views() {
+            for pixel in [[0.5, 0.5], [160.0, 100.0], [319.5, 3.25], [17.0, 199.0]] {
+                let (origin, direction) = view.ray(pixel);
+                for depth in [0.7, 5.0, 60.0] {
+                    let point = (origin + direction * depth).extend(1.0);
+                    let [x, y, w, z] = view.rows.map(|row| row.dot(point));
+                    let found = [x / w, y / w, z];
+                    let expected = [pixel[0], pixel[1], depth];
+                    for (found, expected) in found.into_iter().zip(expected) {
+                        assert!((found - expected).abs() < 1e-9 * (1.0 + expected), "{found} instead of {expected}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rays_start_at_the_eye_or_run_parallel() {
+        let [perspective, orthographic] = views();
+        assert!(perspective.ray([12.0, 180.0]).0.length() < 1e-12);
+        let (a, b) = (orthographic.ray([0.0, 0.0]), orthographic.ray([100.0, 50.0]));
+        assert!(a.1.distance(b.1) < 1e-12 && a.0.distance(b.0) > 0.1);
     }
 }

@@ -1,0 +1,10 @@
+//! Integer hashes that Rust and WGSL (`shaders/math/hash.wgsl`) evaluate to the same bits, low-discrepancy sequences, and what is
+//! drawn from either.
+
+mod filter;
+mod hash;
+mod sequence;
+
+pub use filter::PixelFilter;
+pub use hash::{hash_combine, hash_u32, normal_from_hash, unit_from_hash};
+pub use sequence::{basis, disc, r2, sphere};
