@@ -1,4 +1,6 @@
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+
+use crate::strands::Strands;
 
 /// One knot of a yarn as the renderer stores it.
 #[derive(Clone, Copy, Debug)]
@@ -89,6 +91,39 @@ where
 }
 
 impl Segment {
+    /// All segments of a curve in its current shape, object space. An open curve continues beyond its ends by reflection.
+    pub fn of_curve(strands: &Strands, curve: usize) -> Vec<Self> {
+        let (first, end) = (strands.offsets()[curve] as usize, strands.offsets()[curve + 1] as usize);
+        let (count, closed, total) = (end - first, strands.closed()[curve], strands.total_lengths()[curve]);
+        let inside = |i: usize| Knot {
+            position: Vec3::from(strands.positions()[first + i]).as_dvec3(),
+            normal: Vec3::from(strands.normals()[first + i]).as_dvec3(),
+            length: strands.lengths()[first + i],
+            radius: strands.radii()[first + i].into(),
+        };
+        let reflected = |end: Knot, next: Knot| Knot {
+            position: end.position * 2.0 - next.position,
+            length: end.length * 2.0 - next.length,
+            ..end
+        };
+        // `i` counts from the knot before the first.
+        let knot = |i: usize| {
+            if closed {
+                let (turn, at) = ((i + count - 1) / count, (i + count - 1) % count);
+                let knot = inside(at);
+                Knot { length: knot.length + total * (turn as f64 - 1.0), ..knot }
+            } else if i == 0 {
+                reflected(inside(0), inside(1))
+            } else if i > count {
+                reflected(inside(count - 1), inside(count - 2))
+            } else {
+                inside(i - 1)
+            }
+        };
+        let segments = if closed { count } else { count - 1 };
+        (0..segments).map(|i| Self::new([knot(i), knot(i + 1), knot(i + 2), knot(i + 3)])).collect()
+    }
+
     /// The segment between `knots[1]` and `knots[2]`.
     pub fn new(knots: [Knot; 4]) -> Self {
         let vector = |[a, b, c, d]: [DVec3; 4]| hermite(b, c, (c - a) * 0.5, (d - b) * 0.5);

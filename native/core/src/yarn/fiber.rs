@@ -92,6 +92,19 @@ pub struct FiberPoint {
     pub velocity: DVec3,
     /// What the fiber is here.
     pub kind: FiberType,
+    /// Factor on the width: a hair thins out towards its tip, and so does the end that it leaves in the ply.
+    pub taper: f64,
+    /// Whether this is the part of a hair's period on the other side of its tip, where the fiber begins anew.
+    pub beyond_tip: bool,
+}
+
+/// Where a fiber's curve breaks: third derivatives jump there, and at a hair's tip the fiber ends and another begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Break {
+    /// Length coordinate.
+    pub length: f64,
+    /// Whether it is the tip of a hair.
+    pub tip: bool,
 }
 
 /// Centre of a ply [WuYuksel2018, equation after Fig. 3], with N_ply = N for a yarn of one ply.
@@ -128,10 +141,41 @@ struct Profile {
     angle_turns: f64,
     angle_rate: f64,
     kind: FiberType,
+    taper: f64,
+    beyond_tip: bool,
 }
 
 /// Narrowest and widest hair, as a share of its period.
 pub const HAIR_WIDTH: (f64, f64) = (0.04, 0.45);
+
+/// Share of a period over which the fiber regains its width beyond a hair's tip.
+const REGROWTH: f64 = 0.15;
+
+fn variate(v: super::Variate, hash: u32, key: u32) -> f64 {
+    v.mean + v.deviation * normal_from_hash(hash_combine(hash, key))
+}
+
+/// What a fiber is in the period with that hash.
+fn period_type(yarn: &Yarn, index: u32, hash: u32) -> FiberType {
+    if index >= yarn.flyaway_fibers() {
+        return FiberType::Migration;
+    }
+    let (loop_chance, hair_chance) = yarn.flyaway_chances();
+    let choice = unit_from_hash(hash);
+    if choice < loop_chance {
+        FiberType::Loop
+    } else if choice < loop_chance + hair_chance {
+        FiberType::Hair
+    } else {
+        FiberType::Migration
+    }
+}
+
+/// Direction (±1) and width, as a share of the period, of the hair in the period with that hash.
+fn hair_extent(yarn: &Yarn, hash: u32) -> (f64, f64) {
+    let span = variate(yarn.flyaways.hair_z_span, hash, 2);
+    (1.0_f64.copysign(span), (span.abs() / yarn.migration_period()).clamp(HAIR_WIDTH.0, HAIR_WIDTH.1))
+}
 
 /// `phase` runs from 0 to 1 over a period, whose ends lie at the least radius: types join there to first order.
 ///
@@ -148,38 +192,91 @@ fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, ph
         angle_turns: 0.0,
         angle_rate: 0.0,
         kind,
+        taper: 1.0,
+        beyond_tip: false,
     };
-    let variate = |v: super::Variate, key| v.mean + v.deviation * normal_from_hash(hash_combine(hash, key));
-    if index >= yarn.flyaway_fibers() {
-        return between(fiber_radius, FiberType::Migration);
-    }
-    let (loop_chance, hair_chance) = yarn.flyaway_chances();
     let fly = &yarn.flyaways;
-    let choice = unit_from_hash(hash);
-    if choice < loop_chance {
-        let outer = variate(fly.loop_r_max, 1) / yarn.mean_axis();
-        return between(outer.max(fiber_radius), FiberType::Loop);
-    }
-    if choice < loop_chance + hair_chance {
-        let span = variate(fly.hair_z_span, 2);
-        let width = (span.abs() / yarn.migration_period()).clamp(HAIR_WIDTH.0, HAIR_WIDTH.1);
-        let direction = 1.0_f64.copysign(span);
-        let along = (phase - 0.5) * direction / width;
-        if (0.0..=1.0).contains(&along) {
-            let tip = (variate(fly.hair_r_min, 3) + variate(fly.hair_r_span, 4)) / yarn.mean_axis();
+    match period_type(yarn, index, hash) {
+        FiberType::Migration => between(fiber_radius, FiberType::Migration),
+        FiberType::Loop => {
+            let outer = variate(fly.loop_r_max, hash, 1) / yarn.mean_axis();
+            between(outer.max(fiber_radius), FiberType::Loop)
+        }
+        FiberType::Hair => {
+            let (direction, width) = hair_extent(yarn, hash);
+            let along = (phase - 0.5) * direction / width;
+            if along < 0.0 {
+                return between(fiber_radius, FiberType::Migration);
+            }
+            if along > 1.0 {
+                let x = ((along - 1.0) * width / REGROWTH).min(1.0);
+                let taper = x * x * (3.0 - 2.0 * x);
+                return Profile { taper, beyond_tip: true, ..between(fiber_radius, FiberType::Migration) };
+            }
+            let tip = (variate(fly.hair_r_min, hash, 3) + variate(fly.hair_r_span, hash, 4)) / yarn.mean_axis();
             let rise = tip.max(fiber_radius) - fiber_radius;
-            let turns = variate(fly.hair_theta_span, 5) / TAU;
+            let turns = variate(fly.hair_theta_span, hash, 5) / TAU;
             let astray = direction * (turns - width / periods_per_turn);
-            return Profile {
+            Profile {
                 radius: fiber_radius + rise * along * along,
                 radius_rate: 2.0 * along * rise * direction / width,
                 angle_turns: astray * along * along,
                 angle_rate: 2.0 * along * astray * direction / width,
                 kind: FiberType::Hair,
-            };
+                taper: 1.0 - along.powi(4),
+                beyond_tip: false,
+            }
         }
     }
-    between(fiber_radius, FiberType::Migration)
+}
+
+/// Seed of a curve's fibers in an object: what [`Fiber::seed`] holds.
+pub fn fiber_seed(object_id: u32, curve: u32) -> u32 {
+    hash_combine(hash_combine(0x00b1_ec70, object_id), hash_combine(0x11c5_1e00, curve))
+}
+
+/// Migration periods before a length coordinate: the whole part counts periods, the rest is the phase.
+fn migration_phase(twist: &Twist, table: &FiberTable, length: f64, fiber: Fiber) -> f64 {
+    // Every ply is turned by its own angle and phase, so that plies are not copies of each other.
+    let own = unit_from_hash(hash_combine(hash_combine(fiber.seed, fiber.ply), 0x0fff_fff1));
+    length * twist.migration + table.migration_turns[fiber.index as usize] + own
+}
+
+fn period_hash(twist: &Twist, fiber: Fiber, whole_phase: f64) -> u32 {
+    let mut period = whole_phase as u32;
+    if let Some(count) = twist.closed_periods {
+        period %= count.max(1);
+    }
+    hash_combine(hash_combine(hash_combine(fiber.seed, fiber.ply), fiber.index), period)
+}
+
+/// The breaks of a fiber strictly between two length coordinates, in order.
+pub fn breaks(yarn: &Yarn, twist: &Twist, table: &FiberTable, fiber: Fiber, lengths: (f64, f64)) -> Vec<Break> {
+    let mut found = Vec::new();
+    if fiber.index >= yarn.flyaway_fibers() {
+        return found;
+    }
+    let start = migration_phase(twist, table, 0.0, fiber);
+    let phases = (start + lengths.0 * twist.migration, start + lengths.1 * twist.migration);
+    let mut period = phases.0.floor();
+    while period < phases.1 {
+        let hash = period_hash(twist, fiber, period);
+        let mut add = |phase: f64, tip| found.push(Break { length: (period + phase - start) / twist.migration, tip });
+        add(0.0, false);
+        if period_type(yarn, fiber.index, hash) == FiberType::Hair {
+            let (direction, width) = hair_extent(yarn, hash);
+            if direction < 0.0 {
+                add(0.5 - width, true);
+                add(0.5, false);
+            } else {
+                add(0.5, false);
+                add(0.5 + width, true);
+            }
+        }
+        period += 1.0;
+    }
+    found.retain(|b| b.length > lengths.0 && b.length < lengths.1);
+    found
 }
 
 /// A fiber's point [WuYuksel2018 Eq. 1, 2 and §3.1].
@@ -188,17 +285,10 @@ pub fn fiber_point(yarn: &Yarn, twist: &Twist, table: &FiberTable, at: &YarnPoin
     let index = fiber.index as usize;
     let ply_hash = hash_combine(fiber.seed, fiber.ply);
 
-    // Every ply is turned by its own angle and phase, so that plies are not copies of each other.
-    let phase = at.length * twist.migration
-        + table.migration_turns[index]
-        + unit_from_hash(hash_combine(ply_hash, 0x0fff_fff1));
-    let mut period = phase.floor() as u32;
-    if let Some(count) = twist.closed_periods {
-        period %= count.max(1);
-    }
-    let period_hash = hash_combine(hash_combine(ply_hash, fiber.index), period);
+    let phase = migration_phase(twist, table, at.length, fiber);
+    let hash = period_hash(twist, fiber, phase.floor());
     let periods_per_turn = twist.migration / twist.fiber;
-    let shape = profile(yarn, periods_per_turn, fiber.index, table.radius[index], phase.fract(), period_hash);
+    let shape = profile(yarn, periods_per_turn, fiber.index, table.radius[index], phase.fract(), hash);
     let phase_rate = at.length_rate * twist.migration;
 
     let sign = yarn.fiber_twist.signum();
@@ -222,6 +312,8 @@ pub fn fiber_point(yarn: &Yarn, twist: &Twist, table: &FiberTable, at: &YarnPoin
             + spoke_rate * (shape.radius * scale)
             + spoke * (shape.radius * scale_rate + shape.radius_rate * phase_rate * scale),
         kind: shape.kind,
+        taper: shape.taper,
+        beyond_tip: shape.beyond_tip,
     }
 }
 

@@ -7,7 +7,9 @@ mod presets;
 mod table;
 
 pub use curve::{Knot, Segment, YarnPoint};
-pub use fiber::{Fiber, FiberPoint, FiberType, HAIR_WIDTH, PlyPoint, Twist, fiber_point, ply_point};
+pub use fiber::{
+    Break, Fiber, FiberPoint, FiberType, HAIR_WIDTH, PlyPoint, Twist, breaks, fiber_point, fiber_seed, ply_point,
+};
 pub use parameters::{Flyaways, Variate, Yarn, YarnError};
 pub use presets::PRESET_NAMES;
 pub use table::{FiberTable, acceptance, radial_density};

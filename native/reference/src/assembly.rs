@@ -1,0 +1,271 @@
+//! All fibers of a scene, and what rays meet among them.
+
+use glam::{DVec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::builder::build_cwbvh;
+use obvhs::ray::{Ray as BoxRay, RayHit};
+use obvhs::{Boundable, BvhBuildParams};
+use rayon::prelude::*;
+
+use crate::cone::{Entry, RoundCone};
+use crate::fibers::{Fibers, position};
+
+/// Leaves at most. A leaf is a run of neighbouring round cones of a fiber: one for scenes with fewer cones than this, more for larger ones.
+/// Building takes about 200 bytes a leaf. Runs of 2, 4 and 8 instead of 1 take 26, 21 and 19 bytes a cone instead of 36, and rays take
+/// 1.3, 2.4 and 5 times as long (`examples/rays.rs`, 9 M cones).
+const MOST_LEAVES: usize = 25_000_000;
+
+/// Longest run.
+const MOST_RUN: usize = 8;
+
+/// Margin about boxes, as a share of the scene's size: what f32 rounds away.
+const MARGIN: f32 = 1e-6;
+
+/// A hit within this share of a radius below the neighbour's surface is on it.
+const JOINT: f64 = 1e-6;
+
+/// Fibers with a bounding volume hierarchy over runs of them.
+pub struct Assembly {
+    /// Chains one after another; the radius of a chain's last point has its sign bit set.
+    points: Vec<[f32; 4]>,
+    /// First segment of every run, in the order of the hierarchy's leaves.
+    runs: Vec<u32>,
+    /// Most segments of a run.
+    run: usize,
+    hierarchy: CwBvh,
+    margin: f32,
+    center: DVec3,
+    /// Of a sphere about the centre that holds everything.
+    radius: f64,
+}
+
+/// A ray of unit direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes.
+    pub direction: DVec3,
+}
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance.
+    pub t: f64,
+    /// Number of the round cone: that of its first point.
+    pub segment: u32,
+    /// Place along it, 0 to 1.
+    pub along: f64,
+}
+
+/// The surface at a hit.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// On the surface.
+    pub position: DVec3,
+    /// Unit normal of the fiber that the chords stand for: perpendicular to its tangent.
+    pub normal: DVec3,
+    /// Unit normal of the round cone.
+    pub cone_normal: DVec3,
+    /// Unit tangent, interpolated along the fiber, towards growing length coordinates.
+    pub tangent: DVec3,
+    /// Radius of the fiber.
+    pub radius: f64,
+}
+
+/// A ray among boxes.
+struct Clipped {
+    ray: BoxRay,
+    /// How far along the true ray it starts.
+    skip: f64,
+    margin: f32,
+}
+
+impl Clipped {
+    /// The distance among boxes up to which something nearer than `t` may lie.
+    fn shorten(&self, t: f64) -> f32 {
+        ((t - self.skip) as f32).min(f32::MAX) + self.margin
+    }
+}
+
+struct RunBox<'a> {
+    points: &'a [[f32; 4]],
+    margin: f32,
+}
+
+impl Boundable for RunBox<'_> {
+    fn aabb(&self) -> Aabb {
+        let mut bounds = Aabb { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
+        for [x, y, z, radius] in self.points {
+            let (at, reach) = (Vec3A::new(*x, *y, *z), Vec3A::splat(radius.abs() + self.margin));
+            bounds = Aabb { min: bounds.min.min(at - reach), max: bounds.max.max(at + reach) };
+        }
+        bounds
+    }
+}
+
+impl Assembly {
+    /// Builds the hierarchy.
+    pub fn new(fibers: Fibers) -> Self {
+        let Fibers { mut points, offsets } = fibers;
+        let run = (points.len() / MOST_LEAVES + 1).min(MOST_RUN);
+        let ends = offsets.windows(2).map(|w| w[0] as usize..w[1] as usize);
+        let mut runs = Vec::new();
+        for chain in ends {
+            runs.extend(chain.clone().take(chain.len() - 1).step_by(run).map(|first| first as u32));
+            let last = &mut points[chain.end - 1][3];
+            *last = -last.abs();
+        }
+        let (low, high) = points
+            .par_iter()
+            .map(|p| {
+                let (at, reach) = (position(*p), f64::from(p[3].abs()));
+                (at - reach, at + reach)
+            })
+            .reduce(|| (DVec3::INFINITY, DVec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let center = 0.5 * (low + high);
+        let radius = 0.5 * low.distance(high);
+        let margin = MARGIN * center.abs().max_element().max(radius) as f32;
+        let boxes: Vec<RunBox> =
+            runs.iter().map(|first| RunBox { points: run_of(&points, *first as usize, run), margin }).collect();
+        let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::fast_build() };
+        let mut hierarchy = build_cwbvh(&boxes, params, &mut std::time::Duration::default());
+        let ordered = std::mem::take(&mut hierarchy.primitive_indices);
+        let runs = ordered.into_iter().map(|place| runs[place as usize]).collect();
+        Self { points, runs, run, hierarchy, margin, center, radius }
+    }
+
+    /// Bytes of fibers and hierarchy.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.points[..]) + size_of_val(&self.runs[..]) + size_of_val(&self.hierarchy.nodes[..])
+    }
+
+    /// Centre and radius of a sphere that holds everything.
+    pub fn bounds(&self) -> (DVec3, f64) {
+        (self.center, self.radius)
+    }
+
+    fn cone(&self, segment: usize) -> RoundCone {
+        let (a, b) = (self.points[segment], self.points[segment + 1]);
+        RoundCone { a: position(a), b: position(b), radius_a: a[3].abs().into(), radius_b: b[3].abs().into() }
+    }
+
+    fn has_next(&self, segment: usize) -> bool {
+        self.points[segment + 1][3].is_sign_positive()
+    }
+
+    fn has_previous(&self, segment: usize) -> bool {
+        segment > 0 && self.points[segment - 1][3].is_sign_positive()
+    }
+
+    /// The nearest surface that the ray enters between the distances 0 and `reach`. A ray that starts inside of a fiber leaves it unhindered.
+    pub fn nearest(&self, ray: &Ray, reach: f64) -> Option<Hit> {
+        let clipped = self.clip(ray, reach)?;
+        let mut best: Option<Hit> = None;
+        self.hierarchy.ray_traverse(clipped.ray, &mut RayHit::none(), |_, id| {
+            for segment in self.run_at(id) {
+                let most = best.map_or(reach, |hit| hit.t);
+                if let Some(entry) = self.enter(ray, segment, most) {
+                    best = Some(Hit { t: entry.t, segment: segment as u32, along: entry.along });
+                }
+            }
+            best.map_or(f32::INFINITY, |hit| clipped.shorten(hit.t))
+        });
+        best
+    }
+
+    /// Whether the ray enters any fiber between the distances 0 and `reach`.
+    pub fn is_blocked(&self, ray: &Ray, reach: f64) -> bool {
+        let Some(clipped) = self.clip(ray, reach) else { return false };
+        let is_blocked_by = |id: usize| self.run_at(id).any(|segment| self.enter(ray, segment, reach).is_some());
+        !self.hierarchy.ray_traverse_miss(clipped.ray, |_, id| if is_blocked_by(id) { 0.0 } else { f32::INFINITY })
+    }
+
+    fn enter(&self, ray: &Ray, segment: usize, most: f64) -> Option<Entry> {
+        let entry = self.cone(segment).enter(ray.origin, ray.direction)?;
+        let counts = entry.t > 0.0 && entry.t < most && !self.is_inside_joint(ray, segment, entry.t);
+        counts.then_some(entry)
+    }
+
+    /// Segments of a leaf's run.
+    fn run_at(&self, id: usize) -> impl Iterator<Item = usize> {
+        let first = self.runs[id] as usize;
+        first..first + run_of(&self.points, first, self.run).len() - 1
+    }
+
+    /// Whether the entry lies within the next or the previous round cone of the same fiber: no surface of the fiber.
+    fn is_inside_joint(&self, ray: &Ray, segment: usize, t: f64) -> bool {
+        let point = ray.origin + ray.direction * t;
+        (self.has_next(segment) && self.cone(segment + 1).holds(point, JOINT))
+            || (self.has_previous(segment) && self.cone(segment - 1).holds(point, JOINT))
+    }
+
+    /// The ray in f32 from where it comes near the scene; `None` if it never does.
+    fn clip(&self, ray: &Ray, reach: f64) -> Option<Clipped> {
+        let skip = ((self.center - ray.origin).dot(ray.direction) - 1.01 * self.radius).max(0.0);
+        if skip >= reach {
+            return None;
+        }
+        let start = (ray.origin + ray.direction * skip).as_vec3a();
+        let clipped =
+            Clipped { ray: BoxRay::new(start, ray.direction.as_vec3a(), 0.0, f32::MAX), skip, margin: self.margin };
+        Some(Clipped { ray: BoxRay { tmax: clipped.shorten(reach), ..clipped.ray }, ..clipped })
+    }
+
+    /// The surface at a hit.
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let segment = hit.segment as usize;
+        let cone = self.cone(segment);
+        let position = ray.origin + ray.direction * hit.t;
+        let axis_point = cone.a.lerp(cone.b, hit.along);
+        let from_axis = position - axis_point;
+        let tangent = self.tangent(segment).lerp(self.tangent(segment + 1), hit.along).normalize();
+        let across = from_axis - tangent * from_axis.dot(tangent);
+        let cone_normal = from_axis.normalize_or(-ray.direction);
+        Surface {
+            position,
+            normal: across.normalize_or(cone_normal),
+            cone_normal,
+            tangent,
+            radius: cone.radius_a + (cone.radius_b - cone.radius_a) * hit.along,
+        }
+    }
+
+    /// The fiber's tangent at a point: that of the parabola through it and its neighbours.
+    fn tangent(&self, point: usize) -> DVec3 {
+        let is_last = self.points[point][3].is_sign_negative();
+        let is_first = point == 0 || self.points[point - 1][3].is_sign_negative();
+        let chord = |from: usize| position(self.points[from + 1]) - position(self.points[from]);
+        let inner = |at: usize| {
+            let (before, after) = (chord(at - 1), chord(at));
+            let (a, b) = (before.length_squared(), after.length_squared());
+            (before * b + after * a).normalize_or(after.normalize_or(DVec3::X))
+        };
+        let mirrored = |chord: DVec3, inner: DVec3| {
+            let along = chord.normalize_or(inner);
+            along * (2.0 * inner.dot(along)) - inner
+        };
+        if is_first && self.points[point + 1][3].is_sign_negative() {
+            chord(point).normalize_or(DVec3::X)
+        } else if is_last && (point < 2 || self.points[point - 2][3].is_sign_negative()) {
+            chord(point - 1).normalize_or(DVec3::X)
+        } else if is_first {
+            mirrored(chord(point), inner(point + 1))
+        } else if is_last {
+            mirrored(chord(point - 1), inner(point - 1))
+        } else {
+            inner(point)
+        }
+    }
+}
+
+/// Points of the run of at most `most` segments that begins with a segment.
+fn run_of(points: &[[f32; 4]], first: usize, most: usize) -> &[[f32; 4]] {
+    let mut last = first + 1;
+    while last < first + most && points[last][3].is_sign_positive() {
+        last += 1;
+    }
+    &points[first..=last]
+}

@@ -1,0 +1,173 @@
+//! One fiber of one curve as chains of points, as close as its bends ask for.
+
+use glam::{DMat4, DVec3};
+use lisle_core::yarn::{Fiber, FiberTable, Segment, Twist, Yarn, breaks, fiber_point};
+
+/// Angle that a fiber turns through between two points that the test of [`Walk::refine`] sees, radians: within it, the cubic
+/// through both with their velocities is the curve to a few hundredths of a fiber's radius.
+const MOST_TURN_RAD: f64 = 1.0;
+
+/// Halvings of one step: a chord error that is not reached by then is below the resolution of f32.
+const MOST_HALVINGS: u32 = 12;
+
+/// Share of a segment that keeps an evaluation at a break on its own side.
+const ASIDE: f64 = 1e-9;
+
+/// What all fibers of a curve have in common.
+pub(super) struct Curve<'a> {
+    pub yarn: &'a Yarn,
+    pub table: &'a FiberTable,
+    pub twist: Twist,
+    pub segments: Vec<Segment>,
+    /// To the space of the points; radii grow by its mean scale.
+    pub to_space: DMat4,
+    pub scale: f64,
+    /// How far a chord may depart from its curve, fiber radii.
+    pub chord_error: f64,
+}
+
+/// A point on a fiber; the velocity is per segment parameter.
+#[derive(Clone, Copy)]
+struct Sample {
+    t: f64,
+    position: DVec3,
+    velocity: DVec3,
+    radius: f64,
+    /// Radius without the taper: what errors are measured in.
+    full_radius: f64,
+}
+
+/// Chains of one fiber: points, and where each chain ends.
+#[derive(Default)]
+pub(super) struct Chains {
+    pub points: Vec<[f32; 4]>,
+    pub ends: Vec<u32>,
+}
+
+impl Chains {
+    fn push(&mut self, sample: &Sample) {
+        let [x, y, z] = sample.position.as_vec3().to_array();
+        self.points.push([x, y, z, sample.radius as f32]);
+    }
+
+    fn end(&mut self) {
+        self.ends.push(self.points.len() as u32);
+    }
+}
+
+struct Walk<'a> {
+    curve: &'a Curve<'a>,
+    fiber: Fiber,
+    segment: &'a Segment,
+    chains: &'a mut Chains,
+}
+
+impl Curve<'_> {
+    /// The chains of one fiber along the whole curve.
+    pub fn chains(&self, fiber: Fiber) -> Chains {
+        let mut chains = Chains::default();
+        let mut last = None;
+        for segment in &self.segments {
+            let mut walk = Walk { curve: self, fiber, segment, chains: &mut chains };
+            last = Some(walk.segment(last.is_none()));
+        }
+        chains.end();
+        chains
+    }
+}
+
+impl Walk<'_> {
+    fn sample(&self, t: f64) -> Sample {
+        let curve = self.curve;
+        let at = self.segment.at(t);
+        let point = fiber_point(curve.yarn, &curve.twist, curve.table, &at, self.fiber);
+        let full_radius = at.radius * curve.scale * curve.yarn.fiber_radius / curve.yarn.outer_radius();
+        Sample {
+            t,
+            position: curve.to_space.transform_point3(point.position),
+            velocity: curve.to_space.transform_vector3(point.velocity),
+            radius: full_radius * point.taper,
+            full_radius,
+        }
+    }
+
+    /// Adds the points of the segment, its start only if it is the curve's.
+    fn segment(&mut self, first: bool) {
+        let lengths = (self.segment.at(0.0).length, self.segment.at(1.0).length);
+        let mut start = self.sample(0.0);
+        if first {
+            self.chains.push(&start);
+        }
+        for b in breaks(self.curve.yarn, &self.curve.twist, self.curve.table, self.fiber, lengths) {
+            let t = self.parameter(b.length);
+            let side = |offset: f64| Sample { t, ..self.sample((t + offset).clamp(0.0, 1.0)) };
+            let (mut before, mut after) = (side(-ASIDE), side(ASIDE));
+            if b.tip {
+                (before.radius, after.radius) = (0.0, 0.0);
+            }
+            self.stretch(start, before);
+            if b.tip {
+                self.chains.end();
+                self.chains.push(&after);
+            }
+            start = after;
+        }
+        let end = self.sample(1.0);
+        self.stretch(start, end);
+    }
+
+    /// Where the segment has a length coordinate, which grows along it.
+    fn parameter(&self, length: f64) -> f64 {
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if self.segment.at(middle).length < length { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    }
+
+    /// Adds the points after `a` up to `b`; the fiber is smooth in between.
+    fn stretch(&mut self, a: Sample, b: Sample) {
+        if b.t - a.t <= 4.0 * ASIDE {
+            // A break on a knot: nothing lies in between.
+            return;
+        }
+        let lengths = self.segment.at(b.t).length - self.segment.at(a.t).length;
+        let twist = &self.curve.twist;
+        let turn = std::f64::consts::TAU * lengths * (twist.ply + twist.fiber + twist.migration);
+        let steps = (turn / MOST_TURN_RAD).ceil().clamp(1.0, 1e6) as u32;
+        let mut from = a;
+        for step in 1..=steps {
+            let to =
+                if step == steps { b } else { self.sample(a.t + (b.t - a.t) * f64::from(step) / f64::from(steps)) };
+            self.refine(&from, &to, MOST_HALVINGS);
+            from = to;
+        }
+    }
+
+    /// Halves a step until its chord is close enough to the cubic with the same ends and velocities.
+    ///
+    /// A cubic lies within ¾ of the distance of its inner control points from the chord, and twice as near if those lie on either side.
+    fn refine(&mut self, a: &Sample, b: &Sample, halvings: u32) {
+        let step = (b.t - a.t) / 3.0;
+        let chord = b.position - a.position;
+        let along = chord.normalize_or_zero();
+        let off = |v: DVec3| v - along * v.dot(along);
+        let (from_a, from_b) = (off(a.velocity * step), off(-b.velocity * step));
+        let most = 0.75 * from_a.length().max(from_b.length());
+        let allowed = self.curve.chord_error * a.full_radius.min(b.full_radius);
+        let tapers = a.radius < a.full_radius || b.radius < b.full_radius;
+        if halvings == 0 || (most <= allowed && !tapers) {
+            self.chains.push(b);
+            return;
+        }
+        let middle = self.sample(0.5 * (a.t + b.t));
+        let taper_error = (middle.radius - 0.5 * (a.radius + b.radius)).abs();
+        if most <= allowed && taper_error <= allowed {
+            self.chains.push(b);
+        } else {
+            self.refine(a, &middle, halvings - 1);
+            self.refine(&middle, b, halvings - 1);
+        }
+    }
+}

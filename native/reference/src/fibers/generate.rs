@@ -1,0 +1,73 @@
+use glam::DMat4;
+use lisle_core::strands::Strands;
+use lisle_core::yarn::{Fiber, FiberTable, Segment, Twist, Yarn, fiber_seed};
+use rayon::prelude::*;
+use thiserror::Error;
+
+use super::Fibers;
+use super::chain::{Chains, Curve};
+
+/// How fibers become chains of points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// How far a chord may depart from its curve, in radii of the fiber, above 0.
+    pub chord_error: f64,
+    /// Number of the object, which seeds its fibers: that of [`lisle_core::scene::Object::id`].
+    pub object_id: u32,
+    /// To the space of the points. Radii grow by its mean scale, the cube root of its determinant.
+    pub space_from_object: DMat4,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { chord_error: 0.25, object_id: 1, space_from_object: DMat4::IDENTITY }
+    }
+}
+
+/// More points than 32-bit offsets count.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("the fibers have more than 4294967295 points: allow a larger chord error, or take fewer curves")]
+pub struct TooMany;
+
+/// Every fiber of every curve, loops and hairs included, nothing merged, in the order of curves, plies and fibers.
+///
+/// # Errors
+/// [`TooMany`] for more points than 32-bit offsets count.
+pub fn fibers(strands: &Strands, yarn: &Yarn, options: &Options) -> Result<Fibers, TooMany> {
+    let mut all = Fibers { points: Vec::new(), offsets: vec![0] };
+    append(&mut all, strands, yarn, options)?;
+    Ok(all)
+}
+
+/// Adds the fibers of one object to those of others.
+pub(crate) fn append(all: &mut Fibers, strands: &Strands, yarn: &Yarn, options: &Options) -> Result<(), TooMany> {
+    let table = FiberTable::new(yarn);
+    for index in 0..strands.closed().len() {
+        let closed = strands.closed()[index];
+        let curve = Curve {
+            yarn,
+            table: &table,
+            twist: Twist::new(yarn, strands.total_lengths()[index], strands.reference_radii()[index], closed),
+            segments: Segment::of_curve(strands, index),
+            to_space: options.space_from_object,
+            scale: options.space_from_object.determinant().abs().cbrt(),
+            chord_error: options.chord_error,
+        };
+        let seed = fiber_seed(options.object_id, index as u32);
+        let made: Vec<Chains> = (0..yarn.plies * yarn.fibers_per_ply)
+            .into_par_iter()
+            .map(|i| curve.chains(Fiber { seed, ply: i / yarn.fibers_per_ply, index: i % yarn.fibers_per_ply }))
+            .collect();
+        let count: usize = made.iter().map(|chains| chains.points.len()).sum();
+        if all.points.len() + count > u32::MAX as usize {
+            return Err(TooMany);
+        }
+        all.points.reserve(count);
+        for chains in made {
+            let first = all.points.len() as u32;
+            all.points.extend(chains.points);
+            all.offsets.extend(chains.ends.iter().map(|end| first + end));
+        }
+    }
+    Ok(())
+}
