@@ -109,9 +109,9 @@ impl Segment {
         // `i` counts from the knot before the first.
         let knot = |i: usize| {
             if closed {
-                let (turn, at) = ((i + count - 1) / count, (i + count - 1) % count);
-                let knot = inside(at);
-                Knot { length: knot.length + total * (turn as f64 - 1.0), ..knot }
+                let i = i as isize - 1;
+                let knot = inside(i.rem_euclid(count as isize) as usize);
+                Knot { length: knot.length + total * i.div_euclid(count as isize) as f64, ..knot }
             } else if i == 0 {
                 reflected(inside(0), inside(1))
             } else if i > count {
