@@ -8,7 +8,8 @@ use super::physical::{fresnel, schlick};
 use super::quadrature::simpson;
 use super::tables::lookup;
 use super::{
-    FiberAngles, Material, Normalizers, albedo, highlight_scale, physical_reflected, simple_reflected, von_mises_scale,
+    FiberAngles, Material, Normalizers, Thread, ThreadTables, albedo, highlight_scale, physical_reflected,
+    simple_reflected, von_mises_scale,
 };
 
 /// One fiber's scattering as a path tracer over round fibers uses it: evaluation, sampling, density, albedo.
@@ -30,8 +31,8 @@ use super::{
 /// itself; for others the fiber's other side. The light that reaches a straight fiber there is L_i of the formula as long as no other
 /// fiber is inside this one. S holds all that happens inside: hits of the same fiber before that distance are to be ignored.
 ///
-/// **What holds.** Light is conserved: [`Self::albedo`] ≤ 1. Reciprocity, f(ω_o, ω_i) cos θ_o = f(ω_i, ω_o) cos θ_i for the fiber's part, holds for `Simple`
-/// but not for `Physical`, whose lobes are normalised by the light's θ_i alone. So a white `Physical` fiber gives back all light, but seen at a
+/// **What holds.** Light is conserved: [`Self::albedo`] ≤ 1. Reciprocity, f(ω_o, ω_i) cos θ_o = f(ω_i, ω_o) cos θ_i for the fiber's part, holds for `Simple` and
+/// `Thread` but not for `Physical`, whose lobes are normalised by the light's θ_i alone. So a white `Physical` fiber gives back all light, but seen at a
 /// slant under uniform light it is not exactly 1: it is [`Self::ambient`]. Only a Lambert fiber of albedo 1 disappears in a furnace at every angle.
 #[derive(Clone, Debug)]
 pub enum FiberScattering {
@@ -39,6 +40,8 @@ pub enum FiberScattering {
     Simple(SimpleFiber),
     /// R + TT [Khungurn2015], mixed with a Lambert term.
     Physical(Box<PhysicalFiber>),
+    /// A thread as a whole [Sadeghi2012, Eq. 2–4].
+    Thread(Box<ThreadFiber>),
 }
 
 /// A direction of light drawn by [`FiberScattering::sample`].
@@ -69,6 +72,13 @@ pub struct PhysicalFiber {
     root_integral_tt: Vec<f64>,
     azimuthal_tt: f64,
     azimuth_tt: Azimuth,
+}
+
+/// Parameters of [`FiberScattering::Thread`], and its energy in tables.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThreadFiber {
+    thread: Thread,
+    tables: ThreadTables,
 }
 
 const NORMALIZER_TABLE_SIZE: usize = 2048;
@@ -121,6 +131,11 @@ impl FiberScattering {
         Self::Physical(Box::new(PhysicalFiber::new(material)))
     }
 
+    /// The thread model of a valid thread ([`Thread::validate`]). Takes tens of milliseconds: tables are filled.
+    pub fn thread(thread: Thread) -> Self {
+        Self::Thread(Box::new(ThreadFiber { tables: ThreadTables::new(&thread), thread }))
+    }
+
     /// f, 1/sr: radiance towards `wo` per radiance and solid angle from `wi`, all cosines included.
     pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> DVec3 {
         let angles = FiberAngles::from_directions(DVec3::Z, wi, wo);
@@ -130,6 +145,7 @@ impl FiberScattering {
                 let normalizers = fiber.normalizers(angles.theta_i_rad());
                 physical_reflected(&fiber.material, &normalizers, &angles, wi.x)
             }
+            Self::Thread(fiber) => fiber.tables.evaluate(&fiber.thread, &angles),
         }
     }
 
@@ -167,6 +183,7 @@ impl FiberScattering {
                 let (m, w) = (&fiber.material, fiber.material.diffuse_weight);
                 albedo(m, cos_theta_i) * (1.0 - w) + m.diffuse * w
             }
+            Self::Thread(fiber) => fiber.tables.albedo(&fiber.thread, wi.z.atan2(cos_theta_i)),
         }
     }
 
@@ -174,7 +191,7 @@ impl FiberScattering {
     pub fn ambient(&self, wo: DVec3) -> DVec3 {
         match self {
             // Reciprocal, so that light and viewer may change places.
-            Self::Simple(_) => self.albedo(wo),
+            Self::Simple(_) | Self::Thread(_) => self.albedo(wo),
             Self::Physical(fiber) => {
                 let m = &fiber.material;
                 let theta_o = wo.z.atan2(wo.truncate().length());
@@ -197,7 +214,7 @@ impl FiberScattering {
         match self {
             Self::Simple(SimpleFiber { material: m, .. }) => {
                 let cone = Lobe::Cone { sigma_rad: 2.0 * m.specular_beta_rad, azimuth: Azimuth::HalfCosine };
-                [(mean(m.specular), cone), (mean(m.diffuse), Lobe::Lambert), (0.0, Lobe::Sphere)]
+                [(mean(m.specular), cone), (mean(m.diffuse), Lobe::Lambert), (0.0, Lobe::Even)]
             }
             Self::Physical(fiber) => {
                 let (m, w) = (&fiber.material, fiber.material.diffuse_weight);
@@ -210,6 +227,18 @@ impl FiberScattering {
                     ((1.0 - w) * mean(reflect), cone(m.beta_r_rad, Azimuth::Uniform)),
                     ((1.0 - w) * mean(enter * m.color_tt), cone(m.beta_tt_rad, fiber.azimuth_tt)),
                     (w * mean(m.diffuse), Lobe::Lambert),
+                ]
+            }
+            Self::Thread(fiber) => {
+                let theta = wo.z.atan2(wo.truncate().length());
+                let [surface, volume] = fiber.tables.terms(theta);
+                let (volume, isotropic) = (volume * mean(fiber.thread.color), fiber.thread.isotropic);
+                // θ_h of width γ is θ_i of width 2γ. F grows where cos(φ/2) falls: their product is about uniform in φ.
+                let cone = |width: f64| Lobe::Cone { sigma_rad: 2.0 * width, azimuth: Azimuth::Uniform };
+                [
+                    (surface, cone(fiber.thread.surface_width_rad)),
+                    (volume * (1.0 - isotropic), cone(fiber.thread.volume_width_rad)),
+                    (volume * isotropic, Lobe::Even),
                 ]
             }
         }

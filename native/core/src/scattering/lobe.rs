@@ -19,8 +19,8 @@ pub enum Lobe {
     },
     /// ∝ cosine to the surface normal.
     Lambert,
-    /// Uniform over the sphere.
-    Sphere,
+    /// Uniform in longitude and azimuth.
+    Even,
 }
 
 /// Densities of the azimuth φ about the fiber.
@@ -111,21 +111,22 @@ impl Lobe {
                 let across = DVec2::from_angle(TAU * u[1]) * u[0].sqrt();
                 DVec3::new((1.0 - u[0]).sqrt(), across.x, across.y)
             }
-            Self::Sphere => {
-                let z = 2.0 * u[0] - 1.0;
-                (DVec2::from_angle(TAU * u[1]) * (1.0 - z * z).sqrt()).extend(z)
+            Self::Even => {
+                let theta = PI * (u[0] - 0.5);
+                (DVec2::from_angle(TAU * u[1]) * theta.cos()).extend(theta.sin())
             }
         }
     }
 
     /// Density of [`Lobe::sample`] over the solid angle, 1/sr.
     pub fn density(self, given: DVec3, direction: DVec3) -> f64 {
+        let cos_theta = direction.truncate().length();
+        if cos_theta <= 0.0 {
+            // The cosine of the solid angle is 0, and so is what any model scatters into it.
+            return 0.0;
+        }
         match self {
             Self::Cone { sigma_rad, azimuth } => {
-                let cos_theta = direction.truncate().length();
-                if cos_theta <= 0.0 {
-                    return 0.0;
-                }
                 // The azimuth to a direction along the fiber is that to the normal.
                 let across = given.truncate().try_normalize().unwrap_or(DVec2::X);
                 let cos_phi = direction.truncate().dot(across) / cos_theta;
@@ -133,7 +134,7 @@ impl Lobe {
                 longitude.density(longitude_rad(direction)) / cos_theta * azimuth.density(cos_phi.clamp(-1.0, 1.0))
             }
             Self::Lambert => FRAC_1_PI * direction.x.max(0.0),
-            Self::Sphere => 0.25 * FRAC_1_PI,
+            Self::Even => FRAC_1_PI * UNIFORM / cos_theta,
         }
     }
 }

@@ -10,6 +10,7 @@ mod angles;
 mod azimuthal;
 #[cfg(test)]
 mod battery;
+mod fabrics;
 mod fiber;
 mod frame;
 mod lobe;
@@ -20,9 +21,11 @@ mod physical;
 mod quadrature;
 mod simple;
 mod tables;
+mod thread;
 
 pub use angles::FiberAngles;
 pub use azimuthal::{von_mises, von_mises_scale};
+pub use fabrics::{FABRICS, Fabric, fabric_threads};
 pub use fiber::{FiberScattering, PhysicalFiber, ScatteringSample, SimpleFiber};
 pub use frame::{FiberFrame, distance_inside};
 pub use longitudinal::{gaussian, gaussian_integral};
@@ -33,3 +36,7 @@ pub use physical::{
 };
 pub use simple::{highlight, highlight_scale, simple_ambient, simple_reflected};
 pub use tables::{ScatteringTables, TABLE_SIZE};
+pub use thread::{
+    THREAD_SCALE, THREAD_TABLE_SIZE, Thread, ThreadError, ThreadTables, dielectric_reflectance, thread_printed,
+    thread_terms,
+};

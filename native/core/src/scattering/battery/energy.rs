@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::super::FiberScattering;
-use super::sphere::nodes;
+use super::sphere::nodes_of_order;
 use super::{Case, cases, viewers};
 
 /// Mean of f over the width of a fiber about z as the viewer sees it: f in the axes of each visible point.
@@ -13,7 +13,7 @@ fn over_width(fiber: &FiberScattering, wo: DVec3, wi: DVec3) -> DVec3 {
     // A point whose normal is at angle a from the viewer's azimuth is at sin a of the half width. It is lit up to 90° from the light's.
     let from_viewer = across_o.angle_to(across_i);
     let cuts = [-FRAC_PI_2, FRAC_PI_2].map(|edge| (from_viewer + edge).clamp(-FRAC_PI_2, FRAC_PI_2));
-    let points = nodes([-FRAC_PI_2, FRAC_PI_2, cuts[0], cuts[1]].into());
+    let points = nodes_of_order::<4>([-FRAC_PI_2, FRAC_PI_2, cuts[0], cuts[1]].into());
     let at = |angle: f64| {
         let normal = across_o.rotate(DVec2::from_angle(angle));
         let axes = |d: DVec3| DVec2::new(d.truncate().dot(normal), normal.perp_dot(d.truncate())).extend(d.z);

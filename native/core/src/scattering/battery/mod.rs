@@ -9,7 +9,7 @@ mod sphere;
 
 use glam::DVec3;
 
-use super::{FiberScattering, MATERIAL_NAMES, Material};
+use super::{FiberScattering, MATERIAL_NAMES, Material, Thread, fabric_threads};
 use crate::sampling::{hash_combine, unit_from_hash};
 
 /// A model with parameters, and what the tests need to know of it.
@@ -84,7 +84,31 @@ fn extremes() -> Vec<(&'static str, Material)> {
 
 fn cases() -> Vec<Case> {
     let presets = MATERIAL_NAMES.iter().map(|name| (*name, Material::preset(name).expect("preset")));
-    presets.chain(extremes()).flat_map(|(name, material)| material_cases(name, material)).collect()
+    let materials = presets.chain(extremes()).flat_map(|(name, material)| material_cases(name, material));
+    materials.chain(threads().into_iter().map(|(name, thread)| thread_case(&name, thread))).collect()
+}
+
+fn thread_case(name: &str, thread: Thread) -> Case {
+    thread.validate().expect(name);
+    Case {
+        name: format!("thread {name}"),
+        fiber: FiberScattering::thread(thread),
+        widths: vec![2.0 * thread.surface_width_rad, 2.0 * thread.volume_width_rad],
+        gamma: 1.0,
+    }
+}
+
+/// The fitted threads, and some at the ends of what [`Thread::validate`] lets through.
+fn threads() -> Vec<(String, Thread)> {
+    let mut threads = fabric_threads();
+    let linen = threads[0].1;
+    let narrow = Thread { surface_width_rad: 0.002, volume_width_rad: 0.004, isotropic: 0.0, ..linen };
+    let white = Thread { color: DVec3::ONE, surface_width_rad: 0.1, ..linen };
+    let metal = Thread { refraction: 4.0, color: DVec3::ZERO, ..linen };
+    let faint = Thread { refraction: 1.1, isotropic: 1.0, ..linen };
+    let extremes = [("narrow", narrow), ("white", white), ("metal", metal), ("faint", faint)];
+    threads.extend(extremes.map(|(name, thread)| (name.to_owned(), thread)));
+    threads
 }
 
 /// A direction in the axes of [`super::FiberFrame`].

@@ -30,6 +30,14 @@ fn the_simple_highlight_is_reciprocal() {
 }
 
 #[test]
+fn the_thread_model_is_reciprocal() {
+    for (name, thread) in super::threads() {
+        let asymmetry = asymmetry(&FiberScattering::thread(thread));
+        assert!(asymmetry < 1e-9, "{name}: {asymmetry}");
+    }
+}
+
+#[test]
 fn the_lambert_term_is_reciprocal_at_the_surface() {
     let material = Material { specular: DVec3::ZERO, ..Material::preset("silk").expect("preset") };
     let fiber = FiberScattering::simple(material);

@@ -25,9 +25,14 @@ fn gauss_legendre<const N: usize>() -> [(f64, f64); N] {
 }
 
 /// Nodes and weights over the intervals between sorted cuts.
-pub fn nodes(mut cuts: Vec<f64>) -> Vec<(f64, f64)> {
+pub fn nodes(cuts: Vec<f64>) -> Vec<(f64, f64)> {
+    nodes_of_order::<8>(cuts)
+}
+
+/// The same with N nodes to an interval.
+pub fn nodes_of_order<const N: usize>(mut cuts: Vec<f64>) -> Vec<(f64, f64)> {
     cuts.sort_by(f64::total_cmp);
-    let rule = gauss_legendre::<8>();
+    let rule = gauss_legendre::<N>();
     let intervals = cuts.windows(2).filter(|pair| pair[1] - pair[0] > 1e-12);
     let nodes = intervals.flat_map(|pair| {
         let (middle, half) = (0.5 * (pair[0] + pair[1]), 0.5 * (pair[1] - pair[0]));
@@ -40,7 +45,9 @@ impl Case {
     /// Nodes over θ for a direction at `theta`: dense about the specular cone and, where normalisers change quickly, the poles.
     pub fn longitudes(&self, theta: f64) -> Vec<(f64, f64)> {
         let mut cuts = vec![-FRAC_PI_2, FRAC_PI_2, 0.0, -FRAC_PI_4, FRAC_PI_4];
-        for width in &self.widths {
+        // Fresnel terms change within the angle that is left to the pole.
+        let left = (FRAC_PI_2 - theta.abs()).max(1e-6);
+        for width in self.widths.iter().chain([&left]) {
             for k in [-9.0, -6.0, -4.0, -2.5, -1.2, 0.0, 1.2, 2.5, 4.0, 6.0, 9.0] {
                 cuts.push((k * width - theta).clamp(-FRAC_PI_2, FRAC_PI_2));
             }
