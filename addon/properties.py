@@ -13,8 +13,14 @@ from .core.errors import NativeError
 from .presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS
 
 
-def _fill_from_preset(group, _context):
+def _tag(group, _context):
+    """Tells views that what they show has changed: Blender does not do so for an extension's properties."""
+    group.id_data.update_tag()
+
+
+def _fill_from_preset(group, context):
     """Copies the preset's numbers, so that customizing starts from what is on screen."""
+    _tag(group, context)
     if not group.customize:
         return
     try:
@@ -27,21 +33,21 @@ def _fill_from_preset(group, _context):
 
 
 def _length(name, description, **options):
-    return FloatProperty(name=name, description=description, precision=4, step=0.1, **options)
+    return FloatProperty(name=name, description=description, precision=4, step=0.1, update=_tag, **options)
 
 
 def _variate(name, description):
     return FloatVectorProperty(
-        name=name, description=f"{description}: mean and standard deviation", size=2, precision=4
+        name=name, description=f"{description}: mean and standard deviation", size=2, precision=4, update=_tag
     )
 
 
 def _color(name, description):
-    return FloatVectorProperty(name=name, description=description, subtype="COLOR", size=3, min=0, max=1)
+    return FloatVectorProperty(name=name, description=description, subtype="COLOR", size=3, min=0, max=1, update=_tag)
 
 
 def _degrees(name, description):
-    return FloatProperty(name=name, description=f"{description}, in degrees", min=0.1, max=90, default=10)
+    return FloatProperty(name=name, description=f"{description}, in degrees", min=0.1, max=90, default=10, update=_tag)
 
 
 class LisleYarn(bpy.types.PropertyGroup):
@@ -65,9 +71,15 @@ class LisleYarn(bpy.types.PropertyGroup):
         description="Change the yarn's numbers; choosing a yarn sets them all again",
         update=_fill_from_preset,
     )
-    plies: IntProperty(name="Plies", description="Plies twisted into the yarn", min=1, max=16, default=3)
+    plies: IntProperty(name="Plies", description="Plies twisted into the yarn", min=1, max=16, default=3, update=_tag)
     fibers_per_ply: IntProperty(
-        name="Fibers per Ply", description="Fibers twisted into each ply", min=1, soft_max=300, max=4000, default=75
+        name="Fibers per Ply",
+        description="Fibers twisted into each ply",
+        min=1,
+        soft_max=300,
+        max=4000,
+        default=75,
+        update=_tag,
     )
     ply_twist: _length(
         "Ply Twist", "Length of yarn for one turn of its plies; the sign is the direction", default=0.453
@@ -80,22 +92,39 @@ class LisleYarn(bpy.types.PropertyGroup):
     ellipse_short: _length("Ply Thickness", "Short half axis of a ply's section", min=1e-5, default=0.02)
     fiber_radius: _length("Fiber Radius", "Radius of one fiber", min=1e-6, default=0.002)
     density_beta: FloatProperty(
-        name="Density Falloff", description="How strongly fibers gather at the ply's core", min=0, soft_max=1
+        name="Density Falloff",
+        description="How strongly fibers gather at the ply's core",
+        min=0,
+        soft_max=1,
+        update=_tag,
     )
     density_epsilon: FloatProperty(
-        name="Density Floor", description="Share of the fibers spread evenly over the ply", min=0, max=0.5
+        name="Density Floor", description="Share of the fibers spread evenly over the ply", min=0, max=0.5, update=_tag
     )
     r_min: FloatProperty(
-        name="Migration Depth", description="Least relative radius of a fiber that wanders inwards", min=0, max=1
+        name="Migration Depth",
+        description="Least relative radius of a fiber that wanders inwards",
+        min=0,
+        max=1,
+        update=_tag,
     )
     migration_rate: FloatProperty(
-        name="Migration Rate", description="Times a fiber wanders in and out per turn", min=0.01, soft_max=5, default=1
+        name="Migration Rate",
+        description="Times a fiber wanders in and out per turn",
+        min=0.01,
+        soft_max=5,
+        default=1,
+        update=_tag,
     )
     loop_density: FloatProperty(
-        name="Loops", description="Fibers that leave the ply as loops, per unit of length", min=0, soft_max=100
+        name="Loops",
+        description="Fibers that leave the ply as loops, per unit of length",
+        min=0,
+        soft_max=100,
+        update=_tag,
     )
     hair_density: FloatProperty(
-        name="Hairs", description="Fibers that end in the air, per unit of length", min=0, soft_max=100
+        name="Hairs", description="Fibers that end in the air, per unit of length", min=0, soft_max=100, update=_tag
     )
     loop_r_max: _variate("Loop Height", "Largest distance of a loop from the ply's centre")
     hair_r_min: _variate("Hair Start", "Distance from the ply's centre at which a hair leaves")
@@ -134,7 +163,7 @@ class LisleFiber(bpy.types.PropertyGroup):
     gamma_tt_deg: _degrees("Transmission Spread", "Spread of transmitted light around the fiber")
     diffuse: _color("Diffuse", "Colour of the diffuse part")
     diffuse_weight: FloatProperty(
-        name="Diffuse Weight", description="Share of the diffuse part in physical shading", min=0, max=1
+        name="Diffuse Weight", description="Share of the diffuse part in physical shading", min=0, max=1, update=_tag
     )
     specular: _color("Specular", "Colour of the highlight in simple shading")
     specular_beta_deg: _degrees("Specular Width", "Width of the highlight in simple shading")
@@ -156,6 +185,15 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
     samples: IntProperty(
         name="Samples", description="Jittered samples per pixel", min=1, soft_max=256, max=65536, default=16
     )
+    viewport_samples: IntProperty(
+        name="Viewport Samples",
+        description="Samples per pixel after which a picture in the viewport is finished",
+        min=1,
+        soft_max=64,
+        max=65536,
+        default=8,
+        update=_tag,
+    )
     shading: EnumProperty(
         name="Shading",
         description="How fibers scatter light",
@@ -163,6 +201,7 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
             ("physical", "Physical", "Reflection and transmission, as measured on fibers", 0),
             ("simple", "Simple", "A highlight and a diffuse part; faster", 1),
         ),
+        update=_tag,
     )
     occlusion: EnumProperty(
         name="Ambient Occlusion",
@@ -171,6 +210,7 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
             ("distance", "Distance", "From the distance to the yarn's centre", 0),
             ("table", "Table", "Precomputed over the yarn's section", 1),
         ),
+        update=_tag,
     )
     lod: FloatProperty(
         name="Level of Detail",
@@ -179,16 +219,19 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
         max=16,
         default=1,
         subtype="PIXEL",
+        update=_tag,
     )
-    seed: IntProperty(name="Seed", description="Seed of the sample pattern", min=0)
+    seed: IntProperty(name="Seed", description="Seed of the sample pattern", min=0, update=_tag)
     use_reference_frame: BoolProperty(
         name="Custom Reference Frame",
         description="Measure yarn at a frame of your choice, not at the start of the frame range",
+        update=_tag,
     )
     reference_frame: IntProperty(
         name="Frame",
         description="Frame at which yarn has its natural length; fibers keep their places on it in all frames",
         default=1,
+        update=_tag,
     )
 
 
@@ -202,18 +245,21 @@ class LisleObjectSettings(bpy.types.PropertyGroup):
         soft_max=0.1,
         precision=5,
         subtype="DISTANCE",
+        update=_tag,
     )
     use_reference_frame: BoolProperty(
         name="Own Reference Frame",
         description="Measure this object's yarn at its own frame, not at the scene's",
+        update=_tag,
     )
     reference_frame: IntProperty(
-        name="Frame", description="Frame at which this object's yarn has its natural length", default=1
+        name="Frame", description="Frame at which this object's yarn has its natural length", default=1, update=_tag
     )
     remeasure: BoolProperty(
         name="Re-measure Each Frame",
         description="Take every frame's curves as yarn at rest. For curves whose number of points changes: "
         "fibers then slide along yarn that stretches",
+        update=_tag,
     )
 
 

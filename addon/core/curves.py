@@ -162,3 +162,14 @@ def polylines_of_wire(points, edges):
     closing[low[jumps]] = high[jumps]
     closed = closing[starts] == offsets[1:].astype(np.int64) - 1
     return offsets, closed
+
+
+def polylines(curves, most_points):
+    """The control polygons of CurveArrays as lines: points (k, 3) float32 and pairs of them (m, 2) int32.
+
+    Points are left out evenly where there are more than `most_points`.
+    """
+    step = -(-len(curves.points) // most_points)
+    curve = np.repeat(np.arange(curves.curve_count), np.diff(curves.offsets.astype(np.int64)))[::step]
+    joined = np.flatnonzero(curve[1:] == curve[:-1]).astype(np.int32)
+    return np.ascontiguousarray(curves.points[::step]), np.stack((joined, joined + 1), axis=1)

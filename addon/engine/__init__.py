@@ -3,15 +3,17 @@
 
 import bpy
 
-from . import job
+from . import job, painting
 from .engine import LisleRenderEngine
 
 
 def register():
     bpy.utils.register_class(LisleRenderEngine)
     job.register()
+    painting.register()
 
 
 def unregister():
+    painting.unregister()
     job.unregister()
     bpy.utils.unregister_class(LisleRenderEngine)

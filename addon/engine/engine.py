@@ -7,6 +7,7 @@ saves it.
 """
 
 import traceback
+import weakref
 
 import bpy
 
@@ -14,6 +15,7 @@ from ..core.errors import Cancelled, LisleError
 from . import job
 from .frame import draw
 from .passes import register_passes, write_passes
+from .viewport import Viewport
 
 
 class LisleRenderEngine(bpy.types.RenderEngine):
@@ -23,6 +25,13 @@ class LisleRenderEngine(bpy.types.RenderEngine):
     bl_label = "Lisle"
     bl_use_postprocess = True
     bl_use_eevee_viewport = True
+
+    _viewport = None
+    """Of the region that this instance draws; none in a final render."""
+
+    def __del__(self):
+        if self._viewport is not None:
+            self._viewport.close()
 
     def update_render_passes(self, scene, view_layer):
         register_passes(self, scene, view_layer)
@@ -44,6 +53,42 @@ class LisleRenderEngine(bpy.types.RenderEngine):
         message = _message(error)
         if message is not None:
             self.report({"ERROR"}, f"Lisle: {message}")
+
+    def view_update(self, context, depsgraph):
+        if self._viewport is None:
+            self._viewport = Viewport(weakref.WeakMethod(self._redraw))
+        try:
+            self._viewport.update(context, depsgraph)
+        except Exception:  # Blender would show the trace at every redraw
+            traceback.print_exc()
+
+    def view_draw(self, context, depsgraph):
+        if self._viewport is None:
+            return
+        self.bind_display_space_shader(depsgraph.scene)
+        try:
+            self._say(self._viewport.draw(context, depsgraph))
+        except Exception:
+            traceback.print_exc()
+        finally:
+            self.unbind_display_space_shader()
+
+    _said = None
+
+    def _say(self, text):
+        """Shows a line in the corner of the viewport."""
+        if text != self._said:
+            self._said = text
+            self.update_stats("Lisle", text)
+            self.tag_redraw()  # Blender has written the old one already
+
+    def _redraw(self):
+        """Whether there is still something to redraw."""
+        try:
+            self.tag_redraw()
+        except ReferenceError:
+            return False
+        return True
 
 
 def _message(error):

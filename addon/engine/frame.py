@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One view layer at one frame, from Blender's scene to the native image."""
 
-import numpy as np
-
 from .. import native
 from ..core.camera import border_pixels
 from ..core.errors import Cancelled, LisleError, SceneError
@@ -10,6 +8,7 @@ from ..core.pixels import look_up
 from ..export.camera import native_camera
 from ..export.scene import collect
 from ..export.world import ambient_radiance
+from .assembly import add_objects
 from .job import REST_SHAPES
 from .renderer import drop, renderer
 
@@ -86,37 +85,4 @@ def _native_scene(lisle, engine, depsgraph, frame_size, note):
         lights=content.lights,
         ambient=ambient_radiance(depsgraph.scene.world, note),
     )
-    parts = {key: _parts(lisle, geometry, at_rest[key]) for key, geometry in content.geometries.items()}
-    pass_index_of = {}
-    for placement in content.placements:
-        identity = placement.identity
-        while identity in pass_index_of:  # two of equal hash; their order is stable
-            identity += 1
-        pass_index_of[identity] = placement.pass_index
-        for yarns, (yarn, material) in parts[placement.key]:
-            scene.add(
-                yarns,
-                yarn=yarn,
-                material=material,
-                transform=placement.world_from_object,
-                object_id=identity,
-                name=placement.name,
-            )
-    return scene, pass_index_of
-
-
-def _parts(lisle, geometry, at_rest):
-    """[(lisle.Yarns, (lisle.Yarn, lisle.Material))]: the curves of one geometry, by material."""
-    curves, materials = geometry.curves, geometry.materials
-    if curves.material_index is None or len(materials) == 1:
-        return [(REST_SHAPES.yarns(lisle, geometry.key, curves, at_rest), materials[0])]
-    # Blender draws an index beyond the last slot with the last one.
-    slots = np.clip(curves.material_index, 0, len(materials) - 1)
-    return [
-        (
-            REST_SHAPES.yarns(lisle, (*geometry.key, f"material {slot}"), part, part if curves is at_rest else rest),
-            materials[slot],
-        )
-        for slot in np.unique(slots)
-        for part, rest in [(curves.select(slots == slot), at_rest.select(slots == slot))]
-    ]
+    return scene, add_objects(lisle, scene, content, at_rest, REST_SHAPES)

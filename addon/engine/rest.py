@@ -65,6 +65,21 @@ class RestShapes:
                 raise RestShapeError(geometry.object_name, frame, geometry.reference_frame, difference)
         return at_rest
 
+    def known(self, scene, view_layer, content):
+        """As `find`, for interactive views: no other frame is evaluated. Until the reference frame has been shown, the
+        shape seen first counts as the one at rest; so does a new one whose points do not correspond to it.
+        """
+        frame, subframe = scene.frame_current, scene.frame_subframe
+        at_rest = {}
+        for geometry in content.geometries.values():
+            place = (scene.name_full, view_layer.name, geometry.reference_frame, geometry.key)
+            rest = self._curves.get(place)
+            is_reference = geometry.reference_frame == frame and subframe == 0.0
+            if is_reference or rest is None or geometry.curves.difference_from_rest(rest) is not None:
+                self._curves[place] = geometry.curves
+            at_rest[geometry.key] = geometry.curves if geometry.remeasure else self._curves[place]
+        return at_rest
+
     def yarns(self, lisle, key, current, at_rest):
         """`lisle.Yarns` at rest as `at_rest` and placed as `current`; the measured part is kept for the next frame."""
         rest = current.at_rest(at_rest)

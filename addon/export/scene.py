@@ -60,10 +60,11 @@ class Content:
     lights: list = field(default_factory=list)
 
 
-def collect(lisle, depsgraph, note, only=None):
+def collect(lisle, depsgraph, note, only=None, shows=None):
     """Reads the curves and lights of a view layer at the frame that `depsgraph` is at.
 
     `only` limits it to the curves of objects of these names (as in `Geometry.key`), without lights.
+    `shows(object)` says whether a view shows an object, or what it instances; without it, all are shown.
     `note` is called with each sentence about something left out.
     """
     content = Content()
@@ -79,6 +80,8 @@ def collect(lisle, depsgraph, note, only=None):
             continue
         name = obj.original.name_full
         if only is not None and name not in only:
+            continue
+        if shows is not None and not shows((instance.parent if instance.is_instance else obj).original):
             continue
         if not _may_have_curves(obj):
             if obj.type == "MESH":

@@ -27,7 +27,8 @@ class LISLE_RENDER_PT_sampling(LislePanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.split_layout(), context.scene.lisle
-        layout.prop(settings, "samples")
+        layout.prop(settings, "viewport_samples", text="Viewport")
+        layout.prop(settings, "samples", text="Render")
         layout.prop(settings, "seed")
 
 

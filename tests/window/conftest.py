@@ -13,6 +13,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE))
 
 import program  # noqa: E402
+import window  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -27,3 +28,54 @@ def blender(tmp_path_factory):
     blender = program.Program(path, tmp_path_factory.mktemp("blender"))
     blender.install(Path(package).absolute())
     return blender
+
+
+@pytest.fixture(scope="session")
+def scene(blender, tmp_path_factory):
+    """Makes the scene of a kind (see make_scene.py), once."""
+    folder, made = tmp_path_factory.mktemp("scenes"), {}
+
+    def make(kind):
+        if kind not in made:
+            made[kind] = folder / f"{kind}.blend"
+            blender.script(HERE / "make_scene.py", made[kind], kind)
+        return made[kind]
+
+    return make
+
+
+def artefacts():
+    """Folder for screenshots."""
+    folder = Path(os.environ.get("LISLE_ARTEFACTS", HERE.parent.parent / "out" / "window"))
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
+@pytest.fixture(scope="session", params=["opengl", "vulkan"])
+def any_window(request, blender, scene, tmp_path_factory):
+    """A `window.Window` on each of Blender's graphics back ends; it lasts for all tests."""
+    problem = window.Display.problem()
+    if problem is not None:
+        pytest.skip(problem)
+    folder = tmp_path_factory.mktemp(request.param)
+    for name in ("pixels", "commands"):
+        (folder / name).mkdir()
+    display = window.Display(folder / "pixels")
+    opened = window.Window(blender, display, scene("sound"), folder / "commands", request.param)
+    opened.backend, opened.artefacts = request.param, artefacts()
+    opened.do((HERE / "prelude.py").read_text())
+    yield opened
+    code = opened.close()
+    display.close()
+    assert code == 0, opened.log.read_text()
+
+
+@pytest.fixture
+def view(any_window, scene):
+    """The window with the scene as it was, in Rendered shading, without overlays."""
+    any_window.do(f"bpy.ops.wm.open_mainfile(filepath={str(scene('sound'))!r}, load_ui=False)")
+    any_window.do(
+        "bare(); look(); space().shading.type = 'RENDERED'; space().use_render_border = False;"
+        "bpy.context.scene.view_settings.view_transform = 'Standard'"
+    )
+    return any_window

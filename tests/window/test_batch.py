@@ -1,12 +1,7 @@
 """`blender -b`: what a render farm calls. Frames on disk and the exit code are all that it sees."""
 
-from pathlib import Path
-
 import numpy as np
-import pytest
 from PIL import Image
-
-MAKE_SCENE = Path(__file__).parent / "make_scene.py"
 
 BUG_AT_FRAME_3 = """
 import sys
@@ -18,20 +13,6 @@ def broken(self, depsgraph, *arguments):
     return draw(self, depsgraph, *arguments)
 engine.draw = broken
 """
-
-
-@pytest.fixture(scope="session")
-def scene(blender, tmp_path_factory):
-    """Makes the scene of a kind, once."""
-    folder, made = tmp_path_factory.mktemp("scenes"), {}
-
-    def make(kind):
-        if kind not in made:
-            made[kind] = folder / f"{kind}.blend"
-            blender.script(MAKE_SCENE, made[kind], kind)
-        return made[kind]
-
-    return make
 
 
 def names(folder):

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From what was read out of Blender to the native scene. Touches nothing of Blender's: any thread may call it."""
+
+import numpy as np
+
+
+def add_objects(lisle, scene, content, at_rest, rest_shapes):
+    """Adds the yarns of `content` (export.scene.Content), measured on `at_rest`, to a lisle.Scene.
+
+    Returns Blender's object index by object id.
+    """
+    parts = {key: _parts(lisle, geometry, at_rest[key], rest_shapes) for key, geometry in content.geometries.items()}
+    pass_index_of = {}
+    for placement in content.placements:
+        identity = placement.identity
+        while identity in pass_index_of:  # two of equal hash; their order is stable
+            identity += 1
+        pass_index_of[identity] = placement.pass_index
+        for yarns, (yarn, material) in parts[placement.key]:
+            scene.add(
+                yarns,
+                yarn=yarn,
+                material=material,
+                transform=placement.world_from_object,
+                object_id=identity,
+                name=placement.name,
+            )
+    return pass_index_of
+
+
+def _parts(lisle, geometry, at_rest, rest_shapes):
+    """[(lisle.Yarns, (lisle.Yarn, lisle.Material))]: the curves of one geometry, by material."""
+    curves, materials = geometry.curves, geometry.materials
+    if curves.material_index is None or len(materials) == 1:
+        return [(rest_shapes.yarns(lisle, geometry.key, curves, at_rest), materials[0])]
+    # Blender draws an index beyond the last slot with the last one.
+    slots = np.clip(curves.material_index, 0, len(materials) - 1)
+    return [
+        (
+            rest_shapes.yarns(lisle, (*geometry.key, f"material {slot}"), part, part if curves is at_rest else rest),
+            materials[slot],
+        )
+        for slot in np.unique(slots)
+        for part, rest in [(curves.select(slots == slot), at_rest.select(slots == slot))]
+    ]

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures on the screen, with Blender's gpu module: OpenGL, Vulkan and Metal alike."""
+
+import functools
+
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
+
+from ..core.curves import polylines
+
+_LINE_POINTS = 100_000
+"""Most points of an object's lines."""
+_LINE_PLACEMENTS = 1000
+
+
+class Screen:
+    """What one view shows: the texture of its picture, remade when the picture changes, or the yarns as lines."""
+
+    def __init__(self):
+        self._picture = None
+        self._texture = None
+        self._lines_of = None
+        self._lines = ()
+
+    def draw(self, picture, size):
+        """Draws a core.painter.Picture into the bound framebuffer, a view of `size` = (w, h), over what is there."""
+        if picture is not self._picture:
+            self._texture = texture("RGBA16F", np.clip(picture.combined, -65504, 65504))
+            self._picture = picture
+        shader = _picture_shader()
+        shader.bind()
+        shader.uniform_float("rectangle", clip_rectangle(picture.region, size))
+        shader.uniform_sampler("picture", self._texture)
+        gpu.state.depth_test_set("NONE")
+        gpu.state.blend_set("ALPHA_PREMULT")
+        _square(shader).draw(shader)
+        gpu.state.blend_set("NONE")
+
+    def draw_lines(self, snapshot, view):
+        """Draws the yarns of a snapshot.Snapshot as thin lines: what there is before there is a picture."""
+        if snapshot is not self._lines_of:
+            self._lines = [
+                (_line_batch(*polylines(part.curves, _LINE_POINTS)), np.array(part.materials[0][1].diffuse))
+                for part in snapshot.content.geometries.values()
+            ]
+            self._lines_of = snapshot
+        batches = dict(zip(snapshot.content.geometries, self._lines, strict=True))
+        clip_from_world = view.clip_from_camera @ np.linalg.inv(view.world_from_camera)
+        shader = _line_shader()
+        shader.bind()
+        gpu.state.depth_test_set("NONE")
+        gpu.state.blend_set("NONE")
+        for placement in snapshot.content.placements[:_LINE_PLACEMENTS]:
+            batch, color = batches[placement.key]
+            shader.uniform_float("clip_from_object", Matrix(clip_from_world @ placement.world_from_object))
+            shader.uniform_float("line_color", (*color, 1.0))
+            batch.draw(shader)
+
+    def fill(self, color, region, size):
+        """Fills a rectangle with a scene-linear colour."""
+        shader = _fill_shader()
+        shader.bind()
+        shader.uniform_float("rectangle", clip_rectangle(region, size))
+        shader.uniform_float("fill_color", (*color, 1.0))
+        gpu.state.depth_test_set("NONE")
+        _square(shader).draw(shader)
+
+
+def texture(kind, values):
+    """A GPUTexture of (h, w) or (h, w, c) float32 values, bottom row first."""
+    values = np.ascontiguousarray(values, dtype=np.float32)
+    height, width = values.shape[:2]
+    return gpu.types.GPUTexture(
+        (width, height), format=kind, data=gpu.types.Buffer("FLOAT", values.size, values.ravel())
+    )
+
+
+def clip_rectangle(region, size):
+    """(x0, y0, x1, y1) in clip space of a rectangle in pixels."""
+    return tuple(2 * edge / length - 1 for edge, length in zip(region, (*size, *size), strict=True))
+
+
+def _line_batch(points, pairs):
+    return batch_for_shader(_line_shader(), "LINES", {"position": points}, indices=pairs)
+
+
+def _square(shader):
+    return batch_for_shader(shader, "TRI_STRIP", {"corner": ((0, 0), (1, 0), (0, 1), (1, 1))})
+
+
+_PLACE_RECTANGLE = "gl_Position = vec4(mix(rectangle.xy, rectangle.zw, corner), 0.0, 1.0);"
+
+
+@functools.cache
+def _picture_shader():
+    info = gpu.types.GPUShaderCreateInfo()
+    passed = gpu.types.GPUStageInterfaceInfo("lisle_picture")
+    passed.smooth("VEC2", "place")
+    info.push_constant("VEC4", "rectangle")
+    info.sampler(0, "FLOAT_2D", "picture")
+    info.vertex_in(0, "VEC2", "corner")
+    info.vertex_out(passed)
+    info.fragment_out(0, "VEC4", "color")
+    info.vertex_source(f"void main() {{ place = corner; {_PLACE_RECTANGLE} }}")
+    info.fragment_source("void main() { color = texture(picture, place); }")
+    return gpu.shader.create_from_info(info)
+
+
+@functools.cache
+def _fill_shader():
+    info = gpu.types.GPUShaderCreateInfo()
+    info.push_constant("VEC4", "rectangle")
+    info.push_constant("VEC4", "fill_color")
+    info.vertex_in(0, "VEC2", "corner")
+    info.fragment_out(0, "VEC4", "color")
+    info.vertex_source(f"void main() {{ {_PLACE_RECTANGLE} }}")
+    info.fragment_source("void main() { color = fill_color; }")
+    return gpu.shader.create_from_info(info)
+
+
+@functools.cache
+def _line_shader():
+    info = gpu.types.GPUShaderCreateInfo()
+    info.push_constant("MAT4", "clip_from_object")
+    info.push_constant("VEC4", "line_color")
+    info.vertex_in(0, "VEC3", "position")
+    info.fragment_out(0, "VEC4", "color")
+    info.vertex_source("void main() { gl_Position = clip_from_object * vec4(position, 1.0); }")
+    info.fragment_source("void main() { color = line_color; }")
+    return gpu.shader.create_from_info(info)

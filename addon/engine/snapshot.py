@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene as interactive views draw it: read when something changes, drawn from any side by the painter's thread."""
+
+import itertools
+
+from ..core.painter import Stopped
+from ..export.scene import collect
+from ..export.world import ambient_radiance
+from .assembly import add_objects
+from .renderer import drop, renderer
+from .rest import RestShapes
+
+REST_SHAPES = RestShapes()
+"""Rest shapes of what views have shown; forgotten with the file."""
+
+_numbers = itertools.count()
+
+
+class Snapshot:
+    """What a view layer shows at one moment. Made in Blender's main thread; holds no reference into its data."""
+
+    def __init__(self, lisle, depsgraph, shows):
+        scene = depsgraph.scene
+        self._lisle = lisle
+        self.notes = []
+        self.content = collect(lisle, depsgraph, self.notes.append, shows=shows)
+        self._at_rest = REST_SHAPES.known(scene, depsgraph.view_layer, self.content)
+        self._ambient = ambient_radiance(scene.world, self.notes.append)
+        self.background = None if scene.render.film_transparent else self._ambient
+        """Scene-linear colour behind the yarns, None if it is transparent."""
+        self._native = None
+        settings = scene.lisle
+        self.number = next(_numbers)
+        """Differs from that of any other snapshot."""
+        self.samples = settings.viewport_samples
+        self._settings = {
+            "shading": settings.shading,
+            "occlusion": settings.occlusion,
+            "lod_pixels": settings.lod,
+            "transparent": scene.render.film_transparent,
+        }
+
+    def painter(self, camera):
+        """The `draw` of a core.painter.Task that shows this from a lisle.Camera."""
+
+        def draw(size, region, samples, seed, shadow_texels, go_on):
+            lisle = self._lisle
+            try:
+                image = renderer(lisle).render(
+                    self._scene(camera),
+                    size=size,
+                    region=region,
+                    samples=samples,
+                    seed=seed,
+                    shadow_resolution=shadow_texels,
+                    progress=lambda _: go_on(),
+                    **self._settings,
+                )
+            except lisle.Cancelled as error:
+                raise Stopped from error
+            except lisle.DeviceError:
+                drop()
+                raise
+            return image["combined"], image["depth"]
+
+        return draw
+
+    def _scene(self, camera):
+        """The lisle.Scene; made at the first call, in the painter's thread."""
+        if self._native is None:
+            scene = self._lisle.Scene(camera=camera, lights=self.content.lights, ambient=self._ambient)
+            add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES)
+            self._native = scene
+        self._native.camera = camera
+        return self._native

@@ -1,0 +1,101 @@
+"""Blender in a window on a virtual X display, driven from outside and looked at pixel by pixel."""
+
+import json
+import shutil
+import struct
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).parent
+SIZE = (800, 600)
+TIMEOUT_S = 120
+
+
+class Display:
+    """An X server without a screen: its pixels lie in a file."""
+
+    def __init__(self, folder):
+        self._folder = folder
+        command = ["Xvfb", "-displayfd", "1", "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-fbdir", str(folder)]
+        self._server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.name = f":{self._server.stdout.readline().strip()}"
+
+    @staticmethod
+    def problem():
+        """Why there can be none, or None."""
+        return None if shutil.which("Xvfb") else "no `Xvfb` on PATH"
+
+    def pixels(self):
+        """(h, w, 3) uint8, top row first."""
+        data = (self._folder / "Xvfb_screen0").read_bytes()
+        # The header of X window dumps: sizes are big-endian, of the colour map 12 bytes an entry.
+        header, _, _, _, width, height = struct.unpack_from(">6I", data)
+        bytes_per_line, colors = struct.unpack_from(">I", data, 48)[0], struct.unpack_from(">I", data, 76)[0]
+        start = header + 12 * colors
+        rows = np.frombuffer(data, np.uint8, height * bytes_per_line, start).reshape(height, bytes_per_line)
+        return rows[:, : 4 * width].reshape(height, width, 4)[:, :, 2::-1]
+
+    def close(self):
+        self._server.terminate()
+        self._server.wait()
+
+
+class Window:
+    """A Blender with `blend` open; leaves by `close`."""
+
+    def __init__(self, program, display, blend, folder, backend):
+        self._folder, self._count, self.display = folder, 0, display
+        environment = program.environment | {"DISPLAY": display.name}
+        command = [program.path, "--gpu-backend", backend, "-p", "0", "0", *map(str, SIZE), blend]
+        command += ["--python", HERE / "driver.py", "--", folder]
+        self.log = folder / "log.txt"
+        with self.log.open("w") as log:
+            self.process = subprocess.Popen(
+                list(map(str, command)), stdout=log, stderr=subprocess.STDOUT, env=environment
+            )
+
+    def do(self, code, timeout_s=TIMEOUT_S):
+        """Executes code in Blender's main thread and returns its variable `answer`."""
+        answer = self._send(code)
+        end = time.monotonic() + timeout_s
+        while not answer.exists():
+            if self.process.poll() is not None:
+                raise RuntimeError(f"Blender ended with {self.process.returncode}:\n{self.log.read_text()}")
+            if time.monotonic() > end:
+                raise TimeoutError(f"no answer after {timeout_s} s:\n{self.log.read_text()}")
+            time.sleep(0.005)
+        answer = json.loads(answer.read_text())
+        if "error" in answer:
+            raise RuntimeError(answer["error"])
+        return answer["answer"]
+
+    def _send(self, code):
+        """Hands over a command, whole or not at all; returns the path where its answer will be."""
+        command = self._folder / "command.partial"
+        command.write_text(code)
+        command.rename(self._folder / f"{self._count}.py")
+        self._count += 1
+        return self._folder / f"{self._count - 1}.json"
+
+    def until(self, code, timeout_s=TIMEOUT_S):
+        """Executes code again and again until its `answer` is true; returns it."""
+        end = time.monotonic() + timeout_s
+        while time.monotonic() < end:
+            answer = self.do(code)
+            if answer:
+                return answer
+            time.sleep(0.02)
+        raise TimeoutError(f"not true after {timeout_s} s: {code}\n{self.log.read_text()}")
+
+    def close(self):
+        """Quits as a user does; returns the exit code."""
+        if self.process.poll() is None:
+            self._send("bpy.ops.wm.quit_blender()")
+            try:
+                self.process.wait(20)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+        return self.process.wait()
