@@ -1,14 +1,6 @@
 //! How a scene is drawn: plain data, checked when a frame begins.
 
-/// Which formulas shade a fiber.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shading {
-    /// Diffuse and the lobe of [WuYuksel2018 Eq. 5].
-    Simple,
-    /// R + TT [Khungurn2015] and diffuse.
-    #[default]
-    Physical,
-}
+use lisle_core::scene::Shading;
 
 /// Which ambient occlusion [WuYuksel2018 §4.2].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

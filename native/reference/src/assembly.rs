@@ -19,8 +19,11 @@ const MOST_LEAVES: usize = 25_000_000;
 /// Longest run.
 const MOST_RUN: usize = 8;
 
-/// Margin about boxes, as a share of the scene's size: what f32 rounds away.
-const MARGIN: f32 = 1e-6;
+/// Radius of the scene among boxes, about: the box test ignores the first 1e-4 of a ray, which must be next to nothing.
+const BOX_RADIUS: f64 = 65536.0;
+
+/// Margin about boxes: what f32 rounds away.
+const MARGIN: f32 = 1e-6 * BOX_RADIUS as f32;
 
 /// A hit within this share of a radius below the neighbour's surface is on it.
 const JOINT: f64 = 1e-6;
@@ -34,7 +37,8 @@ pub struct Assembly {
     /// Most segments of a run.
     run: usize,
     hierarchy: CwBvh,
-    margin: f32,
+    /// Units of the boxes per unit of length, a power of two; their origin is the centre.
+    scale: f64,
     center: DVec3,
     /// Of a sphere about the centre that holds everything.
     radius: f64,
@@ -80,26 +84,28 @@ struct Clipped {
     ray: BoxRay,
     /// How far along the true ray it starts.
     skip: f64,
-    margin: f32,
+    scale: f64,
 }
 
 impl Clipped {
     /// The distance among boxes up to which something nearer than `t` may lie.
     fn shorten(&self, t: f64) -> f32 {
-        ((t - self.skip) as f32).min(f32::MAX) + self.margin
+        (((t - self.skip) * self.scale) as f32).min(f32::MAX) + MARGIN
     }
 }
 
 struct RunBox<'a> {
     points: &'a [[f32; 4]],
-    margin: f32,
+    center: DVec3,
+    scale: f64,
 }
 
 impl Boundable for RunBox<'_> {
     fn aabb(&self) -> Aabb {
         let mut bounds = Aabb { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
-        for [x, y, z, radius] in self.points {
-            let (at, reach) = (Vec3A::new(*x, *y, *z), Vec3A::splat(radius.abs() + self.margin));
+        for point in self.points {
+            let at = ((position(*point) - self.center) * self.scale).as_vec3a();
+            let reach = (f64::from(point[3].abs()) * self.scale) as f32 + MARGIN;
             bounds = Aabb { min: bounds.min.min(at - reach), max: bounds.max.max(at + reach) };
         }
         bounds
@@ -125,21 +131,32 @@ impl Assembly {
                 (at - reach, at + reach)
             })
             .reduce(|| (DVec3::INFINITY, DVec3::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        let (low, high) = if points.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (low, high) };
         let center = 0.5 * (low + high);
         let radius = 0.5 * low.distance(high);
-        let margin = MARGIN * center.abs().max_element().max(radius) as f32;
+        let scale = (BOX_RADIUS / radius.max(1e-30)).log2().round().exp2();
         let boxes: Vec<RunBox> =
-            runs.iter().map(|first| RunBox { points: run_of(&points, *first as usize, run), margin }).collect();
+            runs.iter().map(|first| RunBox { points: run_of(&points, *first as usize, run), center, scale }).collect();
         let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::fast_build() };
         let mut hierarchy = build_cwbvh(&boxes, params, &mut std::time::Duration::default());
         let ordered = std::mem::take(&mut hierarchy.primitive_indices);
         let runs = ordered.into_iter().map(|place| runs[place as usize]).collect();
-        Self { points, runs, run, hierarchy, margin, center, radius }
+        Self { points, runs, run, hierarchy, scale, center, radius }
     }
 
     /// Bytes of fibers and hierarchy.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.points[..]) + size_of_val(&self.runs[..]) + size_of_val(&self.hierarchy.nodes[..])
+    }
+
+    /// Number of round cones.
+    pub fn segments(&self) -> usize {
+        self.points.iter().filter(|p| p[3].is_sign_positive()).count()
+    }
+
+    /// All points: position and radius, with the sign bit set at the end of a chain.
+    pub(crate) fn points(&self) -> &[[f32; 4]] {
+        &self.points
     }
 
     /// Centre and radius of a sphere that holds everything.
@@ -205,12 +222,13 @@ impl Assembly {
     /// The ray in f32 from where it comes near the scene; `None` if it never does.
     fn clip(&self, ray: &Ray, reach: f64) -> Option<Clipped> {
         let skip = ((self.center - ray.origin).dot(ray.direction) - 1.01 * self.radius).max(0.0);
-        if skip >= reach {
+        if self.runs.is_empty() || skip >= reach {
             return None;
         }
-        let start = (ray.origin + ray.direction * skip).as_vec3a();
-        let clipped =
-            Clipped { ray: BoxRay::new(start, ray.direction.as_vec3a(), 0.0, f32::MAX), skip, margin: self.margin };
+        let start = ((ray.origin + ray.direction * skip - self.center) * self.scale).as_vec3a();
+        // No negative zeros: the box test takes the sign of a component from a comparison with zero.
+        let direction = ray.direction.as_vec3a() + 0.0;
+        let clipped = Clipped { ray: BoxRay::new(start, direction, 0.0, f32::MAX), skip, scale: self.scale };
         Some(Clipped { ray: BoxRay { tmax: clipped.shorten(reach), ..clipped.ray }, ..clipped })
     }
 

@@ -3,4 +3,18 @@
 
 pub mod assembly;
 pub mod cone;
+mod error;
 pub mod fibers;
+mod film;
+mod light;
+mod material;
+mod path;
+mod random;
+mod render;
+mod settings;
+mod world;
+
+pub use error::Error;
+pub use film::{Film, Image};
+pub use render::Reference;
+pub use settings::Settings;

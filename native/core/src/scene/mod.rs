@@ -52,6 +52,16 @@ pub struct Scene {
     pub camera: Camera,
 }
 
+/// Which formulas shade a fiber.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// Diffuse and the lobe of [WuYuksel2018 Eq. 5].
+    Simple,
+    /// R + TT [Khungurn2015] and diffuse.
+    #[default]
+    Physical,
+}
+
 /// A part of a scene that cannot be drawn.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{what}: {reason}")]

@@ -66,10 +66,8 @@ impl Curve<'_> {
     /// The chains of one fiber along the whole curve.
     pub fn chains(&self, fiber: Fiber) -> Chains {
         let mut chains = Chains::default();
-        let mut last = None;
         for segment in &self.segments {
-            let mut walk = Walk { curve: self, fiber, segment, chains: &mut chains };
-            last = Some(walk.segment(last.is_none()));
+            Walk { curve: self, fiber, segment, chains: &mut chains }.segment();
         }
         chains.end();
         chains
@@ -92,10 +90,10 @@ impl Walk<'_> {
     }
 
     /// Adds the points of the segment, its start only if it is the curve's.
-    fn segment(&mut self, first: bool) {
+    fn segment(&mut self) {
         let lengths = (self.segment.at(0.0).length, self.segment.at(1.0).length);
         let mut start = self.sample(0.0);
-        if first {
+        if self.chains.points.is_empty() {
             self.chains.push(&start);
         }
         for b in breaks(self.curve.yarn, &self.curve.twist, self.curve.table, self.fiber, lengths) {

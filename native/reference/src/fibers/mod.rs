@@ -3,6 +3,7 @@
 mod chain;
 mod generate;
 
+pub(crate) use generate::append;
 pub use generate::{Options, TooMany, fibers};
 
 use glam::{DVec3, Vec3};

@@ -1,0 +1,215 @@
+//! Lights as a path tracer uses them: a direction drawn for a point, and what a ray that went elsewhere meets.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DMat4, DVec3};
+use lisle_core::sampling::{basis, disc, sphere};
+use lisle_core::scene::{Cone, Light};
+
+use crate::random::Random;
+
+/// A direction drawn towards a light.
+pub(crate) struct LightSample {
+    /// Unit, towards the light.
+    pub direction: DVec3,
+    pub distance: f64,
+    /// Radiance from there divided by `pdf`.
+    pub irradiance: DVec3,
+    /// Over the solid angle; infinite for a light without extent.
+    pub pdf: f64,
+}
+
+/// What a ray meets of a light.
+pub(crate) struct Glow {
+    pub distance: f64,
+    pub radiance: DVec3,
+    /// Density with which [`Emitter::sample`] draws that direction.
+    pub pdf: f64,
+}
+
+/// A light, in the space of the fibers.
+pub(crate) enum Emitter {
+    /// Parallel light, or a disc at infinity; `tangent` is that of half its diameter.
+    Sun { toward: DVec3, axes: (DVec3, DVec3), irradiance: DVec3, tangent: f64 },
+    /// A sphere of even radiance, or a point.
+    Point { center: DVec3, power: DVec3, radius: f64, cone: Option<Cone> },
+    /// One side of a parallelogram or an ellipse.
+    Area(Box<Panel>),
+}
+
+/// An area light.
+pub(crate) struct Panel {
+    /// From the plane of the unit square or of the disc of diameter 1, and back.
+    space_from_unit: DMat4,
+    unit_from_space: DMat4,
+    /// The side that shines.
+    axis: DVec3,
+    area: f64,
+    ellipse: bool,
+    power: DVec3,
+}
+
+impl Emitter {
+    /// `origin`: of the space, in the world.
+    pub fn new(light: &Light, origin: DVec3) -> Self {
+        match *light {
+            Light::Sun { direction, irradiance, angle_rad } => {
+                let toward = -direction.normalize();
+                // As wide as the renderer's sun can be.
+                let tangent = (0.5 * angle_rad.min(3.1)).tan();
+                Self::Sun { toward, axes: basis(toward), irradiance: irradiance.as_dvec3(), tangent }
+            }
+            Light::Point { position, power, radius, cone } => {
+                Self::Point { center: position - origin, power: power.as_dvec3(), radius, cone }
+            }
+            Light::Area { world_from_light, size, ellipse, power } => {
+                let scale = DMat4::from_scale(DVec3::new(size[0], size[1], 1.0));
+                let space_from_unit = DMat4::from_translation(-origin) * world_from_light * scale;
+                let across = |v: DVec3| space_from_unit.transform_vector3(v);
+                let area = across(DVec3::X).cross(across(DVec3::Y)).length() * if ellipse { PI / 4.0 } else { 1.0 };
+                Self::Area(Box::new(Panel {
+                    space_from_unit,
+                    unit_from_space: space_from_unit.inverse(),
+                    axis: -world_from_light.transform_vector3(DVec3::Z).normalize(),
+                    area,
+                    ellipse,
+                    power: power.as_dvec3(),
+                }))
+            }
+        }
+    }
+
+    /// Whether rays can meet it by chance.
+    pub fn has_extent(&self) -> bool {
+        match self {
+            Self::Sun { tangent, .. } => *tangent > 0.0,
+            Self::Point { radius, .. } => *radius > 0.0,
+            Self::Area(panel) => panel.area > 0.0,
+        }
+    }
+
+    /// A direction from a point; `None` where the light does not shine.
+    pub fn sample(&self, point: DVec3, random: &mut Random) -> Option<LightSample> {
+        let uniform = random.pair();
+        match self {
+            Self::Sun { toward, axes, irradiance, tangent } => {
+                let [u, v] = disc(uniform).map(|c| c * tangent);
+                let direction = (*toward + axes.0 * u + axes.1 * v).normalize();
+                let pdf = sun_density(direction.dot(*toward), *tangent);
+                Some(LightSample { direction, distance: f64::INFINITY, irradiance: *irradiance, pdf })
+            }
+            Self::Point { center, power, radius, cone } => {
+                let to_center = *center - point;
+                let distance_squared = to_center.length_squared();
+                let power = *power * spot(cone.as_ref(), to_center);
+                if power == DVec3::ZERO || distance_squared == 0.0 {
+                    return None;
+                }
+                if *radius == 0.0 {
+                    let distance = distance_squared.sqrt();
+                    let irradiance = power / (4.0 * PI * distance_squared);
+                    let pdf = f64::INFINITY;
+                    return Some(LightSample { direction: to_center / distance, distance, irradiance, pdf });
+                }
+                let radiance = power / (4.0 * PI * PI * radius * radius);
+                let solid_angle = sphere_solid_angle(distance_squared, *radius);
+                let direction = if solid_angle >= 2.0 * TAU {
+                    sphere(uniform)
+                } else {
+                    let axis = to_center / distance_squared.sqrt();
+                    let (x, y) = basis(axis);
+                    // 1 − cos of the angle to the axis is uniform.
+                    let lowered = uniform[0] * solid_angle / TAU;
+                    let sine = (lowered * (2.0 - lowered)).max(0.0).sqrt();
+                    let (sin, cos) = (TAU * uniform[1]).sin_cos();
+                    (axis * (1.0 - lowered) + (x * cos + y * sin) * sine).normalize()
+                };
+                // At the rim rounding may miss it: the nearest point of the ray serves.
+                let distance = sphere_distance(to_center, direction, *radius).unwrap_or(to_center.dot(direction));
+                Some(LightSample { direction, distance, irradiance: radiance * solid_angle, pdf: 1.0 / solid_angle })
+            }
+            Self::Area(panel) => {
+                let Panel { space_from_unit, axis, area, ellipse, power, .. } = &**panel;
+                let [u, v] = if *ellipse { disc(uniform).map(|c| 0.5 * c) } else { uniform.map(|c| c - 0.5) };
+                let to_light = space_from_unit.transform_point3(DVec3::new(u, v, 0.0)) - point;
+                let distance_squared = to_light.length_squared();
+                let distance = distance_squared.sqrt();
+                let direction = to_light / distance.max(1e-300);
+                let cos = -direction.dot(*axis);
+                (cos > 0.0).then(|| LightSample {
+                    direction,
+                    distance,
+                    irradiance: *power * (cos / (PI * distance_squared)),
+                    pdf: distance_squared / (area * cos),
+                })
+            }
+        }
+    }
+
+    /// What a ray of unit direction meets of it.
+    pub fn meet(&self, point: DVec3, direction: DVec3) -> Option<Glow> {
+        match self {
+            Self::Sun { toward, irradiance, tangent, .. } => {
+                let cos = direction.dot(*toward);
+                let is_inside = cos > 0.0 && direction.cross(*toward).length() <= tangent * cos;
+                is_inside.then(|| {
+                    let pdf = sun_density(cos, *tangent);
+                    Glow { distance: f64::INFINITY, radiance: *irradiance * pdf, pdf }
+                })
+            }
+            Self::Point { center, power, radius, cone } => {
+                let to_center = *center - point;
+                let distance = sphere_distance(to_center, direction, *radius)?;
+                let radiance = *power * spot(cone.as_ref(), to_center) / (4.0 * PI * PI * radius * radius);
+                let pdf = 1.0 / sphere_solid_angle(to_center.length_squared(), *radius);
+                Some(Glow { distance, radiance, pdf })
+            }
+            Self::Area(panel) => {
+                let Panel { unit_from_space, axis, area, ellipse, power, .. } = &**panel;
+                let cos = -direction.dot(*axis);
+                let (from, along) =
+                    (unit_from_space.transform_point3(point), unit_from_space.transform_vector3(direction));
+                let distance = -from.z / along.z;
+                if cos <= 0.0 || distance <= 0.0 || !distance.is_finite() {
+                    return None;
+                }
+                let at = (from + along * distance).truncate();
+                let is_inside = if *ellipse { at.length() <= 0.5 } else { at.abs().max_element() <= 0.5 };
+                let radiance = *power / (PI * area);
+                is_inside.then(|| Glow { distance, radiance, pdf: distance * distance / (area * cos) })
+            }
+        }
+    }
+}
+
+/// Density over the solid angle of directions to a disc drawn evenly in the plane at distance 1.
+fn sun_density(cos: f64, tangent: f64) -> f64 {
+    1.0 / (PI * tangent * tangent * cos.powi(3))
+}
+
+/// 2π (1 − √(1 − r²/d²)); the whole sphere from within.
+fn sphere_solid_angle(distance_squared: f64, radius: f64) -> f64 {
+    let share = radius * radius / distance_squared;
+    if share >= 1.0 { 2.0 * TAU } else { TAU * share / (1.0 + (1.0 - share).sqrt()) }
+}
+
+/// Where a ray meets a sphere: its near side, or the far one from within.
+fn sphere_distance(to_center: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
+    let along = to_center.dot(direction);
+    let half = radius * radius - (to_center - direction * along).length_squared();
+    if half < 0.0 {
+        return None;
+    }
+    let (near, far) = (along - half.sqrt(), along + half.sqrt());
+    if near > 0.0 { Some(near) } else { (far > 0.0).then_some(far) }
+}
+
+/// Factor of a spot's cone: as `shaders/light/sample.wgsl`, seen from the sphere's centre.
+fn spot(cone: Option<&Cone>, to_center: DVec3) -> f64 {
+    let Some(cone) = cone else { return 1.0 };
+    let edge = (0.5 * cone.angle_rad).cos();
+    let full = edge + ((1.0 - edge) * cone.blend.clamp(0.0, 1.0)).max(1e-6);
+    let cos = -to_center.normalize_or_zero().dot(cone.direction.normalize());
+    let x = ((cos - edge) / (full - edge)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}

@@ -1,0 +1,148 @@
+//! Samples in order, pixels in parallel.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use lisle_core::sampling::PixelFilter;
+use lisle_core::scene::Scene;
+use lisle_core::view::View;
+use rayon::prelude::*;
+
+use crate::assembly::{Hit, Ray};
+use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
+use crate::random::Random;
+use crate::world::World;
+use crate::{Error, Settings};
+
+/// Time between two calls of the progress callback, about.
+const BREATH: Duration = Duration::from_millis(200);
+
+/// Pixels of the first chunk, and of the smallest.
+const LEAST_CHUNK: usize = 256;
+
+/// A scene with all its fibers, ready to be drawn.
+pub struct Reference {
+    world: World,
+    view: View,
+    filter: PixelFilter,
+    settings: Settings,
+    region: [u32; 4],
+    digest: u64,
+}
+
+impl Reference {
+    /// Checks scene and settings, makes the fibers and finds a hierarchy for them.
+    ///
+    /// # Errors
+    /// [`Error`] for whatever cannot be drawn.
+    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+        let region = settings.check()?;
+        let view = View::new(&scene.camera, settings.size)?;
+        let world = World::new(scene, settings.shading, settings.chord_error)?;
+        let digest = digest(scene, settings, &world);
+        let filter = PixelFilter::new(settings.filter_width);
+        Ok(Self { world, view, filter, settings: settings.clone(), region, digest })
+    }
+
+    /// Round cones of all fibers, and bytes of them with their hierarchy.
+    pub fn extent(&self) -> (usize, usize) {
+        (self.world.assembly.segments(), self.world.assembly.bytes())
+    }
+
+    /// A film without samples.
+    pub fn film(&self) -> Film {
+        let [_, _, width, height] = self.region;
+        let pixels = vec![Pixel::default(); width as usize * height as usize];
+        Film { size: [width, height], samples: self.settings.samples, digest: self.digest, done: 0, pixels }
+    }
+
+    /// Adds the samples that a film lacks. `progress` is called a few times a second and can stop the work: the film then holds what is
+    /// done, and another call, in this process or another, ends in the same bits as one without the stop.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`]; [`Error::Checkpoint`] for a film of another picture.
+    pub fn render(&self, film: &mut Film, progress: &mut dyn FnMut(&Film) -> ControlFlow<()>) -> Result<(), Error> {
+        let [_, _, width, height] = self.region;
+        if film.digest != self.digest || film.size != [width, height] {
+            return Err(Error::Checkpoint("is of another scene, or of other settings"));
+        }
+        if film.done > film.pixels.len() as u64 * u64::from(self.settings.samples) {
+            return Err(Error::Checkpoint("has more samples than are asked for"));
+        }
+        film.samples = self.settings.samples;
+        let count = film.pixels.len();
+        let mut chunk = LEAST_CHUNK;
+        while !film.is_done() {
+            let start = Instant::now();
+            let (sample, first) = ((film.done / count as u64) as u32, (film.done % count as u64) as usize);
+            let end = count.min(first + chunk);
+            film.pixels[first..end].par_iter_mut().enumerate().for_each(|(i, pixel)| {
+                self.add(first + i, sample, pixel);
+            });
+            film.done += (end - first) as u64;
+            if progress(film).is_break() {
+                return Err(Error::Cancelled);
+            }
+            let ratio = BREATH.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
+            chunk = ((chunk as f64 * ratio.clamp(0.25, 4.0)) as usize).max(LEAST_CHUNK);
+        }
+        Ok(())
+    }
+
+    /// Adds one sample to the pixel at a place of the region.
+    fn add(&self, place: usize, sample: u32, pixel: &mut Pixel) {
+        let [left, top, width, _] = self.region;
+        let (x, y) = (left + place as u32 % width, top + place as u32 / width);
+        let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+        if sample == 0 {
+            let met = self.meet(center);
+            pixel.depth = met.as_ref().map_or(EMPTY_DEPTH, |(_, _, depth)| *depth);
+            pixel.object_id = met.map_or(0, |(_, hit, _)| self.world.object_id(hit.segment));
+        }
+        // By the pixel's place in the frame: a region has the same noise as the whole.
+        let number = u64::from(y) * u64::from(self.settings.size[0]) + u64::from(x);
+        let mut random = Random::new(self.settings.seed, number, sample);
+        let offset = self.filter.offset(random.pair());
+        let Some((ray, hit, _)) = self.meet([center[0] + offset[0], center[1] + offset[1]]) else {
+            if !self.settings.transparent {
+                let radiance = self.world.ambient.to_array();
+                pixel.add(&Sample { radiance, alpha: 1.0, ..Sample::default() });
+            }
+            return;
+        };
+        let surface = self.world.assembly.surface(&ray, &hit);
+        pixel.add(&Sample {
+            radiance: self.world.radiance(&ray, &hit, self.settings.bounces, &mut random).to_array(),
+            alpha: 1.0,
+            normal: surface.normal.to_array(),
+            tangent: surface.tangent.to_array(),
+        });
+    }
+
+    /// What the camera sees at a place on the frame: the ray, what it meets, and its depth.
+    fn meet(&self, place: [f64; 2]) -> Option<(Ray, Hit, f64)> {
+        let (at_zero, per_depth) = self.view.ray(place);
+        let length = per_depth.length();
+        let near = self.view.near;
+        let origin = at_zero + per_depth * near + self.view.origin - self.world.origin;
+        let ray = Ray { origin, direction: per_depth / length };
+        let hit = self.world.assembly.nearest(&ray, (self.view.far - near) * length)?;
+        Some((ray, hit, near + hit.t / length))
+    }
+}
+
+/// Tells pictures apart: everything but the number of samples.
+fn digest(scene: &Scene, settings: &Settings, world: &World) -> u64 {
+    let Settings { size, region, seed, bounces, shading, transparent, filter_width, .. } = settings;
+    let settings = format!("{size:?} {region:?} {seed} {bounces:?} {shading:?} {transparent} {filter_width}");
+    let materials: Vec<_> = scene.objects.iter().map(|object| (object.id, &object.material)).collect();
+    let text = format!(
+        "{settings} {materials:?} {:?} {:?} {:?} {:?}",
+        scene.lights, scene.ambient, scene.camera, world.origin
+    );
+    // FNV-1a, 64 bits, over words where there are many.
+    let step = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+    let hash = text.bytes().map(u64::from).fold(0xcbf2_9ce4_8422_2325, step);
+    let words = world.assembly.points().iter().flatten().map(|value| u64::from(value.to_bits()));
+    words.fold(hash, step)
+}

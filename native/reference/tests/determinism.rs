@@ -1,0 +1,126 @@
+//! The same bits whatever the number of threads, after stops, and from checkpoints.
+
+mod support;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use glam::DVec3;
+use lisle_core::scattering::Material;
+use lisle_core::scene::{Light, Scene};
+use lisle_core::yarn::Yarn;
+use lisle_core::{Curves, Yarns};
+use lisle_reference::{Error, Film, Image, Reference, Settings};
+use support::{looking, object, orthographic, scene, sun};
+
+const SIZE: [u32; 2] = [40, 30];
+
+fn settings() -> Settings {
+    Settings { size: SIZE, samples: 6, seed: 3, ..Settings::default() }
+}
+
+fn cloth() -> Scene {
+    let rows = (0..4)
+        .map(|row| (0..30).map(|i| [0.1 * i as f32 - 1.5, 0.1 * (i as f32).sin(), 0.2 * row as f32 - 0.3]).collect());
+    let yarns = Arc::new(Yarns::new(Curves::catmull_rom(rows.collect(), false), Some(0.1)).expect("valid curves"));
+    let camera = orthographic(looking(DVec3::new(0.2, -10.0, 1.0), DVec3::ZERO), 1.0, SIZE);
+    let soft = Light::Sun { direction: DVec3::X, irradiance: glam::Vec3::ONE, angle_rad: 0.3 };
+    let cotton = Material::preset("cotton-2").expect("preset");
+    let yarn = Yarn::preset("silk-1").expect("preset");
+    scene(object(&yarns, &yarn, cotton), vec![sun(DVec3::new(0.3, 1.0, -1.0), 3.0), soft], 0.3, camera)
+}
+
+/// Draws until the film has at least that many samples.
+fn draw_until(reference: &Reference, film: &mut Film, share: f64) -> Result<(), Error> {
+    reference.render(film, &mut |film| {
+        if film.fraction() >= share { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })
+}
+
+fn whole(reference: &Reference) -> Film {
+    let mut film = reference.film();
+    reference.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
+    film
+}
+
+fn on_threads(count: usize, seed: u32) -> Image {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads");
+    pool.install(|| {
+        let settings = Settings { seed, ..settings() };
+        whole(&Reference::new(&cloth(), &settings).expect("a scene")).image()
+    })
+}
+
+#[test]
+fn the_picture_depends_on_the_seed_and_not_on_the_threads() {
+    let one = on_threads(1, 3);
+    assert!(one.combined.iter().any(|c| c[3] > 0.9), "something is drawn");
+    assert_eq!(one, on_threads(3, 3));
+    assert_ne!(one.combined, on_threads(1, 4).combined);
+}
+
+#[test]
+fn a_region_is_cut_from_the_whole() {
+    let scene = cloth();
+    let all = whole(&Reference::new(&scene, &settings()).expect("a scene")).image();
+    let region = Some([7, 4, 20, 10]);
+    let part = whole(&Reference::new(&scene, &Settings { region, ..settings() }).expect("a scene")).image();
+    assert_eq!(part.size, [20, 10]);
+    for y in 0..10 {
+        for x in 0..20 {
+            let (in_all, in_part) = ((y + 4) * SIZE[0] as usize + x + 7, y * 20 + x);
+            assert_eq!(all.combined[in_all], part.combined[in_part]);
+            assert_eq!(all.depth[in_all], part.depth[in_part]);
+        }
+    }
+}
+
+#[test]
+fn stopping_and_going_on_changes_no_bit() {
+    let scene = cloth();
+    let reference = Reference::new(&scene, &settings()).expect("a scene");
+    let expected = whole(&reference);
+    let mut film = reference.film();
+    for share in [0.05, 0.4, 0.41, 0.7] {
+        assert!(matches!(draw_until(&reference, &mut film, share), Err(Error::Cancelled)));
+        assert!(film.fraction() >= share && !film.is_done());
+        // Another process goes on with it.
+        film = Film::from_bytes(&film.to_bytes()).expect("a checkpoint");
+    }
+    let again = Reference::new(&scene, &settings()).expect("a scene");
+    again.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
+    assert_eq!(film, expected);
+}
+
+#[test]
+fn a_finished_picture_takes_more_samples() {
+    let scene = cloth();
+    let few = Reference::new(&scene, &Settings { samples: 2, ..settings() }).expect("a scene");
+    let all = Reference::new(&scene, &settings()).expect("a scene");
+    let mut film = whole(&few);
+    all.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
+    assert_eq!(film, whole(&all));
+    assert!(matches!(few.render(&mut film, &mut |_| ControlFlow::Continue(())), Err(Error::Checkpoint(_))));
+}
+
+#[test]
+fn a_checkpoint_of_another_picture_is_refused() {
+    let scene = cloth();
+    let film = Reference::new(&scene, &settings()).expect("a scene").film();
+    let mut darker = cloth();
+    darker.ambient *= 0.5;
+    for (scene, settings) in [
+        (&darker, settings()),
+        (&scene, Settings { seed: 4, ..settings() }),
+        (&scene, Settings { bounces: Some(2), ..settings() }),
+        (&scene, Settings { chord_error: 0.2, ..settings() }),
+    ] {
+        let other = Reference::new(scene, &settings).expect("a scene");
+        let result = other.render(&mut film.clone(), &mut |_| ControlFlow::Continue(()));
+        assert!(matches!(result, Err(Error::Checkpoint(_))));
+    }
+    let bytes = film.to_bytes();
+    for wrong in [&bytes[..bytes.len() - 1], &bytes[..20], &[], &b"PNG"[..]] {
+        assert!(matches!(Film::from_bytes(wrong), Err(Error::Checkpoint(_))));
+    }
+}
