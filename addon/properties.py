@@ -182,6 +182,12 @@ class LisleMaterialSettings(bpy.types.PropertyGroup):
 class LisleSceneSettings(bpy.types.PropertyGroup):
     """`scene.lisle`"""
 
+    show_overlay: BoolProperty(
+        name="Yarn Fibers",
+        description="Draw yarn with its fibers over the viewport's picture, in any shading mode and with any engine",
+        update=_tag,
+    )
+
     samples: IntProperty(
         name="Samples", description="Jittered samples per pixel", min=1, soft_max=256, max=65536, default=16
     )

@@ -6,12 +6,14 @@ frame. So whatever happens, a full-size result is delivered, and then an error r
 saves it.
 """
 
+import functools
 import traceback
 import weakref
 
 import bpy
 
 from ..core.errors import Cancelled, LisleError
+from ..export.view import view_of
 from . import job
 from .frame import draw
 from .passes import register_passes, write_passes
@@ -56,9 +58,9 @@ class LisleRenderEngine(bpy.types.RenderEngine):
 
     def view_update(self, context, depsgraph):
         if self._viewport is None:
-            self._viewport = Viewport(weakref.WeakMethod(self._redraw))
+            self._viewport = Viewport(functools.partial(_redraw, weakref.ref(self)))
         try:
-            self._viewport.update(context, depsgraph)
+            self._viewport.update(context.space_data, depsgraph)
         except Exception:  # Blender would show the trace at every redraw
             traceback.print_exc()
 
@@ -67,7 +69,7 @@ class LisleRenderEngine(bpy.types.RenderEngine):
             return
         self.bind_display_space_shader(depsgraph.scene)
         try:
-            self._say(self._viewport.draw(context, depsgraph))
+            self._say(self._viewport.draw(view_of(context, depsgraph.scene)))
         except Exception:
             traceback.print_exc()
         finally:
@@ -82,13 +84,17 @@ class LisleRenderEngine(bpy.types.RenderEngine):
             self.update_stats("Lisle", text)
             self.tag_redraw()  # Blender has written the old one already
 
-    def _redraw(self):
-        """Whether there is still something to redraw."""
-        try:
-            self.tag_redraw()
-        except ReferenceError:
-            return False
-        return True
+
+def _redraw(reference):
+    """Has the engine of a weak reference draw again; whether it is still there."""
+    engine = reference()
+    if engine is None:
+        return False
+    try:
+        engine.tag_redraw()
+    except ReferenceError:
+        return False
+    return True
 
 
 def _message(error):

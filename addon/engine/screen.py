@@ -16,29 +16,52 @@ _LINE_PLACEMENTS = 1000
 
 
 class Screen:
-    """What one view shows: the texture of its picture, remade when the picture changes, or the yarns as lines."""
+    """What one view shows: the textures of its picture, remade when the picture changes, or the yarns as lines."""
 
     def __init__(self):
         self._picture = None
-        self._texture = None
+        self._combined = None
+        self._depth = None
         self._lines_of = None
         self._lines = ()
 
-    def draw(self, picture, size):
-        """Draws a core.painter.Picture into the bound framebuffer, a view of `size` = (w, h), over what is there."""
-        if picture is not self._picture:
-            self._texture = texture("RGBA16F", np.clip(picture.combined, -65504, 65504))
-            self._picture = picture
-        shader = _picture_shader()
+    def draw(self, picture, view):
+        """Draws a core.painter.Picture of a core.view.View into the bound framebuffer, over what is there."""
+        self._hold(picture)
+        self._draw(_picture_shader(), picture, view)
+
+    def draw_in_depth(self, picture, view):
+        """The same, hidden by what is nearer in the framebuffer's depth."""
+        if self._hold(picture) or self._depth is None:
+            self._depth = texture("R32F", picture.depth)
+        shader = _deep_picture_shader()
         shader.bind()
-        shader.uniform_float("rectangle", clip_rectangle(picture.region, size))
-        shader.uniform_sampler("picture", self._texture)
-        gpu.state.depth_test_set("NONE")
+        shader.uniform_sampler("depth", self._depth)
+        # Distance along the view axis to clip space's z and w.
+        z, w = view.clip_from_camera[2], view.clip_from_camera[3]
+        shader.uniform_float("depth_row", (-z[2], z[3], -w[2], w[3]))
+        self._draw(shader, picture, view, "LESS_EQUAL")
+
+    def _hold(self, picture):
+        """Brings the texture up to date; whether it was another picture's."""
+        if picture is self._picture:
+            return False
+        self._combined = texture("RGBA16F", np.clip(picture.combined, -65504, 65504))
+        self._picture, self._depth = picture, None
+        return True
+
+    def _draw(self, shader, picture, view, depth_test="NONE"):
+        shader.bind()
+        shader.uniform_float("rectangle", clip_rectangle(picture.region, view.size))
+        shader.uniform_sampler("picture", self._combined)
+        gpu.state.depth_mask_set(False)
+        gpu.state.depth_test_set(depth_test)
         gpu.state.blend_set("ALPHA_PREMULT")
         _square(shader).draw(shader)
         gpu.state.blend_set("NONE")
+        gpu.state.depth_test_set("NONE")
 
-    def draw_lines(self, snapshot, view):
+    def draw_lines(self, snapshot, view, depth_test="NONE"):
         """Draws the yarns of a snapshot.Snapshot as thin lines: what there is before there is a picture."""
         if snapshot is not self._lines_of:
             self._lines = [
@@ -50,19 +73,20 @@ class Screen:
         clip_from_world = view.clip_from_camera @ np.linalg.inv(view.world_from_camera)
         shader = _line_shader()
         shader.bind()
-        gpu.state.depth_test_set("NONE")
+        gpu.state.depth_test_set(depth_test)
         gpu.state.blend_set("NONE")
         for placement in snapshot.content.placements[:_LINE_PLACEMENTS]:
             batch, color = batches[placement.key]
             shader.uniform_float("clip_from_object", Matrix(clip_from_world @ placement.world_from_object))
             shader.uniform_float("line_color", (*color, 1.0))
             batch.draw(shader)
+        gpu.state.depth_test_set("NONE")
 
-    def fill(self, color, region, size):
-        """Fills a rectangle with a scene-linear colour."""
+    def fill(self, color, view):
+        """Fills the view's region with a scene-linear colour."""
         shader = _fill_shader()
         shader.bind()
-        shader.uniform_float("rectangle", clip_rectangle(region, size))
+        shader.uniform_float("rectangle", clip_rectangle(view.region, view.size))
         shader.uniform_float("fill_color", (*color, 1.0))
         gpu.state.depth_test_set("NONE")
         _square(shader).draw(shader)
@@ -93,8 +117,7 @@ def _square(shader):
 _PLACE_RECTANGLE = "gl_Position = vec4(mix(rectangle.xy, rectangle.zw, corner), 0.0, 1.0);"
 
 
-@functools.cache
-def _picture_shader():
+def _picture_info():
     info = gpu.types.GPUShaderCreateInfo()
     passed = gpu.types.GPUStageInterfaceInfo("lisle_picture")
     passed.smooth("VEC2", "place")
@@ -104,7 +127,33 @@ def _picture_shader():
     info.vertex_out(passed)
     info.fragment_out(0, "VEC4", "color")
     info.vertex_source(f"void main() {{ place = corner; {_PLACE_RECTANGLE} }}")
+    return info
+
+
+@functools.cache
+def _picture_shader():
+    info = _picture_info()
     info.fragment_source("void main() { color = texture(picture, place); }")
+    return gpu.shader.create_from_info(info)
+
+
+@functools.cache
+def _deep_picture_shader():
+    info = _picture_info()
+    info.push_constant("VEC4", "depth_row")
+    info.sampler(1, "FLOAT_2D", "depth")
+    info.depth_write("ANY")
+    info.fragment_source("""
+        void main() {
+            color = texture(picture, place);
+            // Not interpolated: between a yarn and the void there is no depth.
+            float along = texelFetch(depth, ivec2(place * vec2(textureSize(depth, 0))), 0).r;
+            if (color.a == 0.0 || along > 1e9) {
+                discard;
+            }
+            gl_FragDepth = 0.5 + 0.5 * (depth_row.x * along + depth_row.y) / (depth_row.z * along + depth_row.w);
+        }
+    """)
     return gpu.shader.create_from_info(info)
 
 

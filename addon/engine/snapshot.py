@@ -40,21 +40,41 @@ class Snapshot:
             "transparent": scene.render.film_transparent,
         }
 
-    def painter(self, camera):
-        """The `draw` of a core.painter.Task that shows this from a lisle.Camera."""
+    def shows_the_same_as(self, other):
+        """Whether pictures of both are equal."""
+        return (
+            self._settings == other._settings
+            and self.samples == other.samples
+            and self._ambient == other._ambient
+            and self.content.equals(other.content)
+            and all(
+                self._at_rest[key] is other._at_rest[key] or self._at_rest[key].equals(other._at_rest[key])
+                for key in self._at_rest
+            )
+        )
+
+    def painter(self, camera, lighting=None, transparent=None):
+        """The `draw` of a core.painter.Task that shows this from a lisle.Camera.
+
+        `lighting` is a list of lights in place of the scene's and its world; `transparent` overrides the film's
+        setting.
+        """
+        settings = dict(self._settings)
+        if transparent is not None:
+            settings["transparent"] = transparent
 
         def draw(size, region, samples, seed, shadow_texels, go_on):
             lisle = self._lisle
             try:
                 image = renderer(lisle).render(
-                    self._scene(camera),
+                    self._scene(camera, lighting),
                     size=size,
                     region=region,
                     samples=samples,
                     seed=seed,
                     shadow_resolution=shadow_texels,
                     progress=lambda _: go_on(),
-                    **self._settings,
+                    **settings,
                 )
             except lisle.Cancelled as error:
                 raise Stopped from error
@@ -65,11 +85,15 @@ class Snapshot:
 
         return draw
 
-    def _scene(self, camera):
+    def _scene(self, camera, lighting):
         """The lisle.Scene; made at the first call, in the painter's thread."""
         if self._native is None:
             scene = self._lisle.Scene(camera=camera, lights=self.content.lights, ambient=self._ambient)
             add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES)
             self._native = scene
         self._native.camera = camera
+        if lighting is None:
+            self._native.lights, self._native.ambient = self.content.lights, self._ambient
+        else:
+            self._native.lights, self._native.ambient = lighting, (0.0, 0.0, 0.0)
         return self._native

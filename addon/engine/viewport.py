@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rendered shading: one region of a 3D viewport that shows the scene with Lisle."""
+"""One region of a 3D viewport that shows yarn: as the engine's Rendered shading, or over another engine's picture."""
 
 import itertools
 
 from .. import native
 from ..core.errors import LisleError
 from ..core.painter import Task
-from ..export.view import view_of
 from . import painting
 from .screen import Screen
 from .snapshot import Snapshot
@@ -18,53 +17,63 @@ _numbers = itertools.count()
 
 
 class Viewport:
-    """What the engine keeps for the region it was made for."""
+    """What is kept for a region."""
 
-    def __init__(self, redraw):
-        """`redraw` is a weak reference to a callable that says whether there is still something to redraw."""
-        self.name = f"engine {next(_numbers)}"
-        self._redraw = redraw
+    def __init__(self, on_news):
+        """`on_news` has the region redrawn, and returns whether it is still there."""
+        self.name = f"viewport {next(_numbers)}"
+        self._on_news = on_news
         self._screen = Screen()
         self._snapshot = None
         self._problem = None
 
-    def update(self, context, depsgraph):
-        """Reads the scene: something in it has changed."""
-        space = context.space_data
+    def update(self, space, depsgraph):
+        """Reads the scene: something in it has changed, though perhaps nothing that is seen here."""
         try:
-            lisle = native.module()
-            self._snapshot = Snapshot(lisle, depsgraph, lambda obj: obj.visible_in_viewport_get(space))
-            self._problem = None
+            new = Snapshot(native.module(), depsgraph, lambda obj: obj.visible_in_viewport_get(space))
         except LisleError as error:
             self._snapshot, self._problem = None, str(error)
+            return
+        if self._snapshot is None or not new.shows_the_same_as(self._snapshot):
+            self._snapshot = new
+        self._problem = None
 
-    def draw(self, context, depsgraph):
-        """Draws the view of the context's region. Returns a line for the status."""
-        if self._snapshot is None:
+    def draw(self, view):
+        """Draws a core.view.View as the whole picture. Returns a line for the status."""
+        if view.is_empty or self._snapshot is None:
             return self._problem or ""
+        picture, status = self._picture(view)
+        if picture is not None:
+            self._screen.draw(picture, view)
+            return status
+        if self._snapshot.background is not None:
+            self._screen.fill(self._snapshot.background, view)
+        self._screen.draw_lines(self._snapshot, view)
+        return status
+
+    def draw_over(self, view, lighting):
+        """Draws the yarns alone, hidden by what is nearer. `lighting` as in Snapshot.painter."""
+        if view.is_empty or self._snapshot is None or not self._snapshot.content.placements:
+            return
+        picture, _ = self._picture(view, lighting, True)
+        if picture is not None:
+            self._screen.draw_in_depth(picture, view)
+        else:
+            self._screen.draw_lines(self._snapshot, view, "LESS_EQUAL")
+
+    def _picture(self, view, lighting=None, transparent=None):
+        """The picture if there is one, and a line for the status."""
         snapshot, lisle = self._snapshot, native.module()
-        view = view_of(context, depsgraph.scene)
-        if view.is_empty:
-            return ""
         camera = lisle.Camera.from_matrices(view.world_from_camera, view.clip_from_camera, view.size)
-        key = (snapshot.number, view.key())
-        painting.PAINTER.show(self.name, Task(key, view.size, view.region, snapshot.samples, snapshot.painter(camera)))
+        key = (snapshot.number, view.key(), repr(lighting))
+        draw = snapshot.painter(camera, lighting, transparent)
+        painting.PAINTER.show(self.name, Task(key, view.size, view.region, snapshot.samples, draw))
         painting.watch(self.name, self._on_news)
         try:
             picture = painting.PAINTER.picture(self.name, WAIT_S)
         except Exception as error:  # raised in the thread
-            return f"{error}"
-        if picture is None:
-            if snapshot.background is not None:
-                self._screen.fill(snapshot.background, view.region, view.size)
-            self._screen.draw_lines(snapshot, view)
-            return "Drawing"
-        self._screen.draw(picture, view.size)
-        return f"Sample {picture.samples}/{snapshot.samples}"
-
-    def _on_news(self):
-        redraw = self._redraw()
-        return redraw is not None and redraw()
+            return None, str(error)
+        return picture, "Drawing" if picture is None else f"Sample {picture.samples}/{snapshot.samples}"
 
     def close(self):
         painting.close(self.name)

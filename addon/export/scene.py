@@ -31,6 +31,10 @@ class Geometry:
     reference_frame: int
     remeasure: bool
 
+    def equals(self, other):
+        """Whether both look the same."""
+        return self.materials == other.materials and self.curves.equals(other.curves)
+
 
 @dataclass(frozen=True)
 class Placement:
@@ -58,6 +62,15 @@ class Content:
     """Geometry by key."""
     placements: list = field(default_factory=list)
     lights: list = field(default_factory=list)
+
+    def equals(self, other):
+        """Whether both look the same."""
+        return (
+            self.geometries.keys() == other.geometries.keys()
+            and all(mine.equals(other.geometries[key]) for key, mine in self.geometries.items())
+            and [placement.order() for placement in self.placements] == [p.order() for p in other.placements]
+            and repr(self.lights) == repr(other.lights)
+        )
 
 
 def collect(lisle, depsgraph, note, only=None, shows=None):

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import blender_panels
+from . import blender_panels, overlay
 from .material import PANELS as MATERIAL_PANELS
 from .object import PANELS as OBJECT_PANELS
 from .render import PANELS as RENDER_PANELS
@@ -16,9 +16,11 @@ def register():
     for panel in _PANELS:
         bpy.utils.register_class(panel)
     blender_panels.register()
+    overlay.register()
 
 
 def unregister():
+    overlay.unregister()
     blender_panels.unregister()
     for panel in reversed(_PANELS):
         bpy.utils.unregister_class(panel)

@@ -18,7 +18,11 @@ def test_register_and_unregister_leave_nothing_behind(addon):
 
     def traces():
         owners = (bpy.types.Material, bpy.types.Scene, bpy.types.Object, bpy.types.ViewLayer)
-        handlers = [h for name in ("render_init", "load_pre") for h in getattr(bpy.app.handlers, name)]
+        handlers = [
+            h
+            for name in ("render_init", "load_pre", "load_post", "frame_change_post")
+            for h in getattr(bpy.app.handlers, name)
+        ]
         handlers = [h for h in handlers if h.__module__.startswith("lisle_blender")]
         panels = [p for p in addon.ui.blender_panels._panels() if "LISLE" in p.COMPAT_ENGINES]
         classes = [c for c in bpy.types.RenderEngine.__subclasses__() if c.__module__.startswith("lisle_blender")]

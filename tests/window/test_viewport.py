@@ -4,56 +4,8 @@ import time
 
 import numpy as np
 import pytest
+from looking import at, screen, settled, srgb, world, yarn_mask
 from PIL import Image
-
-SETTLED = "answer = is_settled()"
-
-
-def srgb(linear):
-    """The 8-bit values of scene-linear ones."""
-    linear = np.asarray(linear, np.float64)
-    return 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
-
-
-def screen(view, keep=None):
-    """The display's pixels once they stand still; `keep` names a file to look at."""
-    last, same = None, 0
-    for _ in range(200):
-        pixels = view.display.pixels().copy()
-        same = same + 1 if last is not None and np.array_equal(pixels, last) else 0
-        if same == 4:
-            break
-        last = pixels
-        time.sleep(0.05)
-    if keep:
-        Image.fromarray(pixels).save(view.artefacts / f"{view.backend}-{keep}.png")
-    return pixels
-
-
-def settled(view, keep=None, views=1):
-    view.until(f"answer = is_settled({views})")
-    return screen(view, keep)
-
-
-def at(pixels, place):
-    column, row = place
-    return pixels[int(row), int(column)].astype(float)
-
-
-def world(view, color, transparent=False):
-    view.do(
-        "world = bpy.context.scene.world = bpy.data.worlds.new('World')\n"
-        f"world.node_tree.nodes['Background'].inputs['Color'].default_value = {(*color, 1)}\n"
-        f"bpy.context.scene.render.film_transparent = {transparent}"
-    )
-
-
-def yarn_mask(pixels, rectangle, background):
-    """Where a viewport shows something; without its edge, where Blender draws handles."""
-    left, top, right, bottom = rectangle
-    part = pixels[top + 16 : bottom - 16, left + 16 : right - 16].astype(float)
-    return np.abs(part - background).max(axis=2) > 12
-
 
 ALONG = "answer = on_screen([(x, y, 0) for x in (-2.5, 0, 2.5) for y in (-1, 0, 1)])"
 

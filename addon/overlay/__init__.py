@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Yarn with its fibers over the picture of any engine, in any shading mode. Imports `engine`."""
+
+import bpy
+
+from . import handler
+from .operator import LISLE_OT_toggle_overlay
+
+
+def register():
+    bpy.utils.register_class(LISLE_OT_toggle_overlay)
+    handler.register()
+
+
+def unregister():
+    handler.unregister()
+    bpy.utils.unregister_class(LISLE_OT_toggle_overlay)

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the overlay at the end of every viewport's redraw, and notices what makes it stale."""
+
+import traceback
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..engine.viewport import Viewport
+from ..export.view import view_of
+from .lighting import lighting_of
+
+
+class _Shown:
+    """The overlay of one region."""
+
+    def __init__(self, region):
+        self.viewport = Viewport(lambda: _redraw(region))
+        self.version = None
+
+
+_shown = {}
+"""By the region's address."""
+
+_version = 0
+"""Counts what may have changed the scene."""
+
+
+def _draw():
+    context = bpy.context
+    scene, space, address = context.scene, context.space_data, context.region.as_pointer()
+    if not _is_on(scene, space):
+        _close(address)
+        return
+    try:
+        shown = _shown.get(address)
+        if shown is None:
+            shown = _shown[address] = _Shown(address)
+        version = (_version, scene.name_full, context.view_layer.name, space.local_view is not None)
+        if shown.version != version:
+            shown.viewport.update(space, context.evaluated_depsgraph_get())
+            shown.version = version
+        view = view_of(context, scene)
+        shown.viewport.draw_over(view, lighting_of(space, view))
+    except Exception:  # Blender would go on calling it
+        traceback.print_exc()
+
+
+def _is_on(scene, space):
+    if not (scene.lisle.show_overlay and space.overlay.show_overlays):
+        return False
+    return not (space.shading.type == "RENDERED" and scene.render.engine == "LISLE")
+
+
+def _redraw(address):
+    """Has a region redrawn; whether it is still there."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            for region in area.regions:
+                if region.as_pointer() == address:
+                    region.tag_redraw()
+                    return True
+    return _close(address)
+
+
+def _close(address):
+    shown = _shown.pop(address, None)
+    if shown is not None:
+        shown.viewport.close()
+    return False
+
+
+def _close_all():
+    for address in list(_shown):
+        _close(address)
+
+
+@persistent
+def _changed(*_):
+    global _version
+    _version += 1
+
+
+@persistent
+def _loaded(*_):
+    _close_all()
+    _changed()
+
+
+_HANDLERS = (
+    ("depsgraph_update_post", _changed),
+    ("frame_change_post", _changed),
+    ("undo_post", _changed),
+    ("redo_post", _changed),
+    ("load_post", _loaded),
+)
+
+_handle = None
+
+
+def register():
+    global _handle
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+    _handle = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW")
+
+
+def unregister():
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(handler)
+    bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
+    _close_all()

@@ -1,0 +1,139 @@
+"""Yarn over the pictures of other engines: hidden by what is nearer, hiding the rest, of the frame on the clock."""
+
+import time
+
+import numpy as np
+import pytest
+from looking import at, screen, settled, srgb, world
+
+PICTURE = """
+view, = painter()._views.values()
+np.save({path!r}, view.picture.combined)
+"""
+
+
+@pytest.fixture
+def over(view):
+    """The view in Solid shading with the overlay on: a cube in front of the yarn's left, and one behind its right."""
+    view.do(
+        "scene = bpy.context.scene\n"
+        "scene.render.engine = 'BLENDER_WORKBENCH'\n"
+        "space().shading.type = 'SOLID'\n"
+        "def cube(name, location):\n"
+        "    mesh = bpy.data.meshes.new(name)\n"
+        "    corners = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]\n"
+        "    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]\n"
+        "    mesh.from_pydata(corners, [], faces)\n"
+        "    obj = bpy.data.objects.new(name, mesh)\n"
+        "    obj.location, obj.scale = location, (0.7, 1.2, 0.4)\n"
+        "    scene.collection.objects.link(obj)\n"
+        "cube('Front', (-1.5, 0, 1.2)); cube('Behind', (1.5, 0, -1.2))\n"
+        "space().overlay.show_overlays = True\n"
+        "overlay = space().overlay\n"
+        "for name in ('show_floor', 'show_axis_x', 'show_axis_y', 'show_cursor', 'show_text', 'show_extras',\n"
+        "             'show_outline_selected', 'show_object_origins', 'show_relationship_lines', 'show_bones'):\n"
+        "    setattr(overlay, name, False)\n"
+        "scene.lisle.show_overlay = True"
+    )
+    return view
+
+
+@pytest.mark.parametrize("perspective", ["PERSP", "ORTHO"])
+@pytest.mark.parametrize("shading", ["SOLID", "CYCLES"])
+def test_yarn_and_scene_hide_each_other(over, shading, perspective):
+    if shading == "CYCLES":
+        world(over, (0.02, 0.02, 0.02))
+        over.do("scene.render.engine = 'CYCLES'; scene.cycles.preview_samples = 1; space().shading.type = 'RENDERED'")
+        time.sleep(1)
+    over.do("material = bpy.data.materials.new('Orange'); material.lisle.fiber.preset = 'cotton-2'")
+    over.do("bpy.data.objects['Yarn'].data.materials.append(material)")
+    over.do(f"look((0.2, 0.1, 0), perspective={perspective!r})")
+    pixels = settled(over, keep=f"over-{shading}-{perspective}")
+    places = over.do("answer = on_screen([(-1.5, 0, 0.8), (-1.5, 0, 1.6), (0, 0, 0.4), (1.5, 0, 0.3), (1.5, 1, -0.8)])")
+    inside, front, alone, before, behind = (at(pixels, place) for place in places)
+    orange = [color[0] > 1.5 * color[2] for color in (inside, front, alone, before, behind)]
+    assert orange == [False, False, True, True, False], (inside, front, alone, before, behind)
+    over.do("scene.lisle.show_overlay = False")
+    over.until("answer = not painter()._views")
+    assert not np.array_equal(screen(over), pixels)
+
+
+def test_what_is_drawn_is_the_offscreen_picture(over, tmp_path):
+    over.do("look((0.4, 0.3, 0)); bpy.data.objects.remove(bpy.data.objects['Front'])")
+    over.do("bpy.data.objects.remove(bpy.data.objects['Behind']); bpy.data.objects['Yarn'].display_type = 'BOUNDS'")
+    pixels = settled(over, keep="offscreen")
+    over.do("import numpy as np" + PICTURE.format(path=str(tmp_path / "p.npy")))
+    picture = np.load(tmp_path / "p.npy")[::-1]
+    left, top, right, bottom = over.do("answer = rectangle()")
+    shown = pixels[top:bottom, left:right]
+    solid = picture[..., 3] > 0.999
+    assert solid.mean() > 0.02
+    # Not the mean: the box's lines are in front of a few pixels.
+    assert np.median(np.abs(shown[solid] - srgb(picture[solid][:, :3]))) < 2
+    mirrored = picture[:, ::-1]
+    wrong = mirrored[..., 3] > 0.999
+    assert np.median(np.abs(shown[wrong] - srgb(mirrored[wrong][:, :3]))) > 5
+
+
+def test_the_switch(over):
+    settled(over)
+    assert over.do("answer = operator(bpy.ops.lisle.toggle_overlay)") == ["FINISHED"]
+    over.until("answer = not painter()._views")
+    over.do("operator(bpy.ops.lisle.toggle_overlay); space().overlay.show_overlays = False")
+    time.sleep(0.3)
+    assert over.do("answer = not painter()._views")
+    over.do("space().overlay.show_overlays = True")
+    settled(over)
+    # The engine's own shading shows the yarn already.
+    over.do("scene.render.engine = 'LISLE'; space().shading.type = 'RENDERED'")
+    settled(over, views=1)
+
+
+RECORD = """
+viewport = sys.modules[PACKAGE + '.engine.viewport']
+if not hasattr(viewport, 'plain_picture'):
+    viewport.plain_picture = viewport.Viewport._picture
+def recorded(self, view, *arguments):
+    picture, status = viewport.plain_picture(self, view, *arguments)
+    yarn = self._snapshot.content.placements[0].world_from_object[1, 3]
+    drawn = None if picture is None else picture.key[0] == self._snapshot.number
+    record.append([bpy.context.scene.frame_current, float(yarn), drawn])
+    return picture, status
+record = []
+viewport.Viewport._picture = recorded
+"""
+
+
+@pytest.mark.parametrize("shading", ["SOLID", "RENDERED"])
+def test_playback_shows_the_frame_on_the_clock(over, shading):
+    over.do(
+        "yarn = bpy.data.objects['Yarn']; yarn.animation_data_clear()\n"
+        "scene.frame_end = 100\n"
+        "for frame in (1, 100):\n"
+        "    yarn.location.y = 0.01 * frame\n"
+        "    yarn.keyframe_insert('location', frame=frame)\n"
+        "scene.frame_set(1)"
+    )
+    if shading == "RENDERED":
+        over.do("scene.render.engine = 'LISLE'; space().shading.type = 'RENDERED'")
+    settled(over)
+    over.do(RECORD)
+    over.do("operator(bpy.ops.screen.animation_play)")
+    time.sleep(3)
+    over.do("operator(bpy.ops.screen.animation_cancel, restore_frame=False)")
+    settled(over)
+    over.do("viewport.Viewport._picture = viewport.plain_picture")
+    record = over.do("answer = record")
+    positions = dict(
+        over.do(
+            "answer = []\n"
+            f"for frame in {sorted({frame for frame, *_ in record})}:\n"
+            "    scene.frame_set(frame)\n"
+            "    answer.append([frame, yarn.matrix_world[1][3]])\n"
+        )
+    )
+    assert len(positions) >= 5, record
+    for frame, position, drawn in record:
+        assert position == pytest.approx(positions[frame], abs=1e-5), frame
+        assert drawn is not False
+    assert sum(drawn is True for _, _, drawn in record) > 0.3 * len(record)
