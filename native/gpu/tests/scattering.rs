@@ -177,7 +177,7 @@ fn queries(fiber: &FiberScattering) -> Vec<Query> {
         }
         let wo = anywhere(z, unit(k, 1));
         let drawn = fiber.sample(wo, [unit(k, 2), unit(k, 3), unit(k, 4)]).map(|sample| sample.wi);
-        let wi = drawn.filter(|_| k % 2 == 0).unwrap_or_else(|| anywhere(2.0 * unit(k, 2) - 1.0, unit(k, 3)));
+        let wi = drawn.filter(|_| k.is_multiple_of(2)).unwrap_or_else(|| anywhere(2.0 * unit(k, 2) - 1.0, unit(k, 3)));
         let u = Vec3::new(unit(k, 5) as f32, unit(k, 6) as f32, unit(k, 7) as f32);
         Query { wo: wo.as_vec3().extend(0.0), wi: wi.as_vec3().extend(0.0), u: u.extend(0.0) }
     };
@@ -310,9 +310,9 @@ fn compare(fiber: &FiberScattering, queries: &[Query], answers: &[Answer]) -> Er
             (at(wi), at(drawn))
         })
         .collect();
-    // The greatest of what is compared with each other, but for infinities that f64 has at a pole.
-    let greatest = |of: &dyn Fn(&((DVec3, f64), (DVec3, f64))) -> f64| exact.iter().map(of).fold(0.0_f64, f64::max);
-    let (value_floor, density_floor) = (1e-4 * greatest(&|e| e.0.0.max_element()), 1e-4 * greatest(&|e| e.0.1));
+    let value_floor = 1e-4 * exact.iter().map(|((value, _), _)| value.max_element()).fold(0.0_f64, f64::max);
+    let density_floor = 1e-4 * exact.iter().map(|((_, pdf), _)| *pdf).fold(0.0_f64, f64::max);
+    // Not a number, which compares with nothing, counts as infinite.
     let relative = |a: f64, b: f64, floor: f64| {
         let error = (a - b).abs() / (b.abs() + floor);
         if error.is_finite() { error } else { f64::INFINITY }
@@ -329,7 +329,7 @@ fn compare(fiber: &FiberScattering, queries: &[Query], answers: &[Answer]) -> Er
         errors.sample_value = errors.sample_value.max(color(a.sample_value, *drawn_value));
         errors.sample_density = errors.sample_density.max(relative(f64::from(a.sample.w), *drawn_pdf, density_floor));
         let drawn = fiber.sample(wo, direction(q.u).to_array()).expect("a fiber that scatters");
-        elsewhere += usize::from(!(drawn.wi.distance(direction(a.sample)) < 2e-3));
+        elsewhere += usize::from(drawn.wi.distance(direction(a.sample)) >= 2e-3);
     }
     errors.samples_elsewhere = elsewhere as f64 / queries.len() as f64;
     errors
