@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lisle: yarn curves drawn as cloth made of plies and fibers.
 
-Imports point one way: overlay → engine → export → core, and ui on top. `core` holds what can be tested without Blender.
+Imports point one way: overlay → engine → export → core, tools → export, and ui on top. `core` holds what can be tested
+without Blender.
 """
 
 import bpy
 
-from . import engine, native, overlay, properties, ui
+from . import engine, native, overlay, properties, tools, ui
 
 SUPPORTED = (4, 5, 0), (5, 3, 0)
 """First Blender version it is made for, and the first that it has not been tried with."""
 
-_MODULES = (properties, engine, overlay, ui)
+_MODULES = (properties, engine, overlay, tools, ui)
 
 
 def register():

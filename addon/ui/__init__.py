@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import blender_panels, overlay
+from . import blender_panels, menus, overlay
 from .material import PANELS as MATERIAL_PANELS
 from .object import PANELS as OBJECT_PANELS
 from .render import PANELS as RENDER_PANELS
@@ -17,9 +17,11 @@ def register():
         bpy.utils.register_class(panel)
     blender_panels.register()
     overlay.register()
+    menus.register()
 
 
 def unregister():
+    menus.unregister()
     overlay.unregister()
     blender_panels.unregister()
     for panel in reversed(_PANELS):

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Curves objects from native yarns."""
+
+import bpy
+import numpy as np
+
+_CATMULL_ROM, _POLY, _B_SPLINE = 0, 1, 4
+"""lisle's codes."""
+
+
+def yarn_data(name, yarns, scale=1.0):
+    """A new `bpy.types.Curves` with the points, radii and cyclic flags of lisle.Yarns, times `scale`.
+
+    Raises ValueError for curves that are neither Catmull-Rom nor linear nor B-splines.
+    """
+    if not np.isin(yarns.basis, (_CATMULL_ROM, _POLY, _B_SPLINE)).all():
+        raise ValueError(f"{name} has curves that are neither Catmull-Rom nor linear nor B-splines")
+    data = bpy.data.hair_curves.new(name)
+    data.add_curves(np.diff(yarns.offsets.astype(np.int64)).tolist())
+    for basis, kind in ((_POLY, "POLY"), (_B_SPLINE, "NURBS")):
+        which = np.flatnonzero(yarns.basis == basis)
+        if len(which):
+            data.set_types(type=kind, indices=which.tolist())
+    if (yarns.basis == _B_SPLINE).any():  # cubic, with evenly spaced knots
+        order = _attribute(data, "nurbs_order", "INT8", "CURVE")
+        order.data.foreach_set("value", np.full(len(yarns.basis), 4, np.int32))
+    data.position_data.foreach_set("vector", (yarns.points * np.float32(scale)).ravel())
+    _attribute(data, "radius", "FLOAT", "POINT").data.foreach_set("value", yarns.radii * np.float32(scale))
+    if yarns.closed.any():
+        _attribute(data, "cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", yarns.closed)
+    data.update_tag()
+    return data
+
+
+def add_material(data, name, yarn, fiber):
+    """Gives curves a new material of these presets."""
+    material = bpy.data.materials.new(name)
+    material.lisle.yarn.preset, material.lisle.fiber.preset = yarn, fiber
+    data.materials.append(material)
+
+
+def _attribute(data, name, kind, domain):
+    return data.attributes.get(name) or data.attributes.new(name, kind, domain)

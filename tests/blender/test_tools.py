@@ -1,0 +1,178 @@
+"""Operators: what they make, that scripts can call them, and what they say where they cannot."""
+
+import struct
+
+import numpy as np
+import pytest
+import scenes
+
+pytestmark = pytest.mark.blender("wheel")
+
+
+def points_of(data):
+    values = np.empty(len(data.points) * 3, np.float32)
+    data.position_data.foreach_get("vector", values)
+    return values.reshape(-1, 3)
+
+
+def values_of(data, name):
+    attribute = data.attributes[name]
+    return np.array([item.value for item in attribute.data])
+
+
+@pytest.mark.parametrize("kind", ["swatch", "tube"])
+def test_knitted_pieces_are_added(lisle, kind):
+    import bpy
+
+    add, make = getattr(bpy.ops.lisle, f"add_knit_{kind}"), getattr(lisle, f"knit_{kind}")
+    assert add(pattern="rib-1-1", courses=6, wales=12, yarn_radius=0.002, location=(1, 2, 3)) == {"FINISHED"}
+    obj = bpy.context.active_object
+    yarns = make("rib-1-1", 6, 12, 0.002)
+    # Properties are in single precision.
+    np.testing.assert_allclose(points_of(obj.data), yarns.points, atol=1e-8)
+    np.testing.assert_allclose(values_of(obj.data, "radius"), yarns.radii, rtol=1e-6)
+    assert len(obj.data.curves) == 6 and tuple(obj.location) == (1, 2, 3) and obj.type == "CURVES"
+    if kind == "tube":
+        assert values_of(obj.data, "cyclic").all()
+
+
+def test_a_chart_and_a_material_of_ones_own(lisle):
+    import bpy
+
+    bpy.ops.lisle.add_knit_swatch(pattern="CHART", chart="kp pk", courses=4, wales=4, yarn="silk-1", fiber="fleece")
+    obj = bpy.context.active_object
+    np.testing.assert_allclose(points_of(obj.data), lisle.knit_swatch("kp pk", 4, 4).points, atol=1e-8)
+    settings = obj.data.materials[0].lisle
+    assert (settings.yarn.preset, settings.fiber.preset) == ("silk-1", "fleece")
+
+
+def test_a_chart_with_other_letters_is_refused(lisle):
+    import bpy
+
+    before = len(bpy.data.objects)
+    with pytest.raises(RuntimeError, match="pattern"):
+        bpy.ops.lisle.add_knit_swatch(pattern="CHART", chart="kx")
+    assert len(bpy.data.objects) == before and not bpy.data.hair_curves
+
+
+def test_adding_can_be_undone(lisle):
+    import bpy
+
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.lisle.add_knit_swatch("EXEC_DEFAULT", True, courses=2, wales=2)
+    assert "Knit Swatch" in bpy.data.objects
+    bpy.ops.ed.undo()
+    assert "Knit Swatch" not in bpy.data.objects
+
+
+def test_a_knitted_piece_renders(lisle, tmp_path):
+    import bpy
+
+    bpy.ops.lisle.add_knit_swatch(courses=6, wales=8, yarn_radius=0.1, rotation=(-1.5708, 0, 0))
+    sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
+    sun.data.energy = 3
+    bpy.context.scene.lisle.samples = 1
+    picture = scenes.render_rgba(tmp_path / "a.exr")
+    assert picture[20:28, 24:40, 3].mean() > 0.5 and picture[20:28, 24:40, :3].mean() > 0.05
+
+
+def bcc(*curves, kind=b"C0"):
+    """A BCC file of curves: (points, closed)."""
+    total = sum(len(points) for points, _ in curves)
+    header = b"BCC\x44" + kind + bytes([3, 2]) + struct.pack("<QQ", len(curves), total) + b"\0" * 40
+    parts = [header]
+    for points, closed in curves:
+        parts.append(struct.pack("<i", -len(points) if closed else len(points)))
+        parts.append(np.asarray(points, "<f4").tobytes())
+    return b"".join(parts)
+
+
+def test_bcc_files_are_imported(lisle, tmp_path):
+    import bpy
+
+    straight = np.linspace((0, 0, 0), (5, 0, 0), 6)
+    ring = [(np.cos(angle), np.sin(angle), 1) for angle in np.arange(8) * np.pi / 4]
+    (tmp_path / "a.bcc").write_bytes(bcc((straight, False), (ring, True)))
+    assert bpy.ops.lisle.import_bcc(filepath=str(tmp_path / "a.bcc"), scale=0.1, yarn_radius=0.02) == {"FINISHED"}
+    data = bpy.context.active_object.data
+    assert [curve.points_length for curve in data.curves] == [6, 8]
+    np.testing.assert_allclose(points_of(data), 0.1 * np.concatenate((straight, ring)), atol=1e-6)
+    np.testing.assert_allclose(values_of(data, "radius"), 0.02, rtol=1e-6)
+    assert values_of(data, "cyclic").tolist() == [False, True]
+
+
+def test_b_splines_become_blenders_own(lisle, tmp_path):
+    import bpy
+
+    points = [(-3, 0, 0), (-1, 2, 0), (0, -2, 0), (1, 2, 0), (3, 0, 0)]
+    (tmp_path / "a.bcc").write_bytes(bcc((points, False), kind=b"BS"))
+    bpy.ops.lisle.import_bcc(filepath=str(tmp_path / "a.bcc"), scale=1, yarn_radius=0.2)
+    obj = bpy.context.active_object
+    assert values_of(obj.data, "curve_type").tolist() == [3] and values_of(obj.data, "nurbs_order").tolist() == [4]
+    sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
+    sun.data.energy = 3
+    alpha = scenes.render_rgba(tmp_path / "a.exr")[..., 3]
+    # The curve begins at (p0 + 4 p1 + p2) / 6, in the test camera of 8 by 6 metres and 64 by 48 pixels.
+    assert alpha[(24 - 8), int(32 - 8 * 7 / 6)] > 0.9 and alpha[24, int(32 - 8 * 2.5)] == 0
+
+
+def test_several_files_at_once_and_a_broken_one(lisle, tmp_path):
+    import bpy
+
+    (tmp_path / "a.bcc").write_bytes(bcc((np.linspace((0, 0, 0), (5, 0, 0), 6), False)))
+    (tmp_path / "b.bcc").write_bytes((tmp_path / "a.bcc").read_bytes())
+    (tmp_path / "c.bcc").write_bytes(b"BCC")
+    names = [{"name": f"{name}.bcc"} for name in "ab"]
+    bpy.ops.lisle.import_bcc(directory=str(tmp_path), files=names, yarn_radius=0.01)
+    assert {"a", "b"} <= {obj.name for obj in bpy.data.objects}
+    with pytest.raises(RuntimeError, match=r"c\.bcc"):
+        bpy.ops.lisle.import_bcc(filepath=str(tmp_path / "c.bcc"))
+    assert "c" not in bpy.data.objects
+
+
+def stretched(factor_by_frame):
+    """A yarn that its object's modifier stretches, not its data."""
+    import bpy
+
+    obj = scenes.curves("Yarn", scenes.line(10))
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    with_nodes = scenes.Nodes(obj)
+    scale = with_nodes.new("Transform", Geometry=with_nodes.input)
+    with_nodes.finish(scale.outputs[0])
+    for frame, factor in factor_by_frame.items():
+        scale.inputs["Scale"].default_value = (factor, 1, 1)
+        scale.inputs["Scale"].keyframe_insert("default_value", frame=frame)
+    return obj
+
+
+def test_lengths_are_stored_at_the_frame_that_is_asked_for(lisle):
+    import bpy
+
+    obj = stretched({1: 1.0, 5: 3.0})
+    bpy.context.scene.frame_set(3)
+    assert bpy.ops.lisle.store_length_coordinate(use_current=False, frame=5) == {"FINISHED"}
+    assert bpy.context.scene.frame_current == 3
+    np.testing.assert_allclose(values_of(obj.data, "length_coordinate"), np.linspace(0, 18, 10), rtol=1e-4)
+    bpy.ops.lisle.store_length_coordinate(use_current=False, frame=1)
+    np.testing.assert_allclose(values_of(obj.data, "length_coordinate"), np.linspace(0, 6, 10), rtol=1e-4)
+
+
+def test_lengths_of_other_points_are_refused(lisle):
+    import bpy
+
+    obj = scenes.curves("Yarn", scenes.line(10))
+    obj.select_set(True)
+    nodes = scenes.Nodes(obj)
+    nodes.finish(nodes.new("ResampleCurve", Curve=nodes.input).outputs[0])
+    nodes.tree.nodes["Resample Curve"].inputs["Count"].default_value = 7
+    with pytest.raises(RuntimeError, match="object 'Yarn': its modifiers make 7 points of 10"):
+        bpy.ops.lisle.store_length_coordinate()
+    assert "length_coordinate" not in obj.data.attributes
+
+
+def test_nothing_selected_is_said(lisle):
+    import bpy
+
+    with pytest.raises(RuntimeError, match="poll"):
+        bpy.ops.lisle.store_length_coordinate()
