@@ -17,7 +17,7 @@ struct Segment {
     radius: vec4f,
     // Where the segment ends: position and radius of its second knot.
     end: vec4f,
-    // Turns of plies and fibers at the segment's start, modulo 1.
+    // Turns of plies and fibers at the segment's start, modulo TURNS_KEPT.
     ply_turns: f32,
     fiber_turns: f32,
     // Migration period and phase at the segment's start.
@@ -94,6 +94,13 @@ fn turns_at(length: u32, whole: u32, rest: f32) -> Turns {
     return Turns(multiply_high(length, whole) + u32(carry), sum - carry);
 }
 
+// Whole turns matter to textures of several turns alone; few, so that the fraction stays exact.
+const TURNS_KEPT: u32 = 4u;
+
+fn turns_kept(turns: Turns) -> f32 {
+    return f32(turns.whole % TURNS_KEPT) + turns.part;
+}
+
 fn length_share(difference: u32) -> f32 {
     return f32(difference) * 0x1p-32;
 }
@@ -121,8 +128,8 @@ fn segment_between(k0: Knot, k1: Knot, k2: Knot, k3: Knot, curve: Curve, handedn
         limited_slope(k2.radius - k1.radius, k3.radius - k2.radius),
     );
     s.end = vec4f(k2.position, k2.radius);
-    s.ply_turns = turns_at(k1.length, curve.ply_whole, curve.ply_rest).part;
-    s.fiber_turns = turns_at(k1.length, curve.fiber_whole, curve.fiber_rest).part;
+    s.ply_turns = turns_kept(turns_at(k1.length, curve.ply_whole, curve.ply_rest));
+    s.fiber_turns = turns_kept(turns_at(k1.length, curve.fiber_whole, curve.fiber_rest));
     let migration = turns_at(k1.length, curve.migration_whole, curve.migration_rest);
     s.period = migration.whole;
     s.phase = migration.part;

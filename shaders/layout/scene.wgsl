@@ -118,6 +118,10 @@ struct Yarn {
     occlusion_extent: f32,
     // Distance from the yarn centre that no fiber leaves, flyaways included.
     bound: f32,
+    core_views: u32,
+    core_turns: u32,
+    core_slope: f32,
+    padding: u32,
 }
 
 struct Material {

@@ -7,6 +7,7 @@ struct CoreEnd {
     half_width: f32,
     side: vec2f,
     turns: f32,
+    depth_share: f32,
     // Distance towards the viewer for h = 1 and v = 1.
     depth_h: f32,
     depth_v: f32,
@@ -23,6 +24,7 @@ fn core_end(c: CorePoint) -> CoreEnd {
         radius_in_pixels(c.half_width, pixel.z),
         side / max(length(side), 1e-20),
         c.turns,
+        c.depth_share,
         dot(c.toward, view),
         dot(c.across, view),
     );
@@ -33,23 +35,48 @@ struct CoreHit {
     t: f32,
     v: f32,
     turns: f32,
+    depth_share: f32,
 }
 
+// Twice the area that a pixel's offset from an end spans with the end's side: its sign tells before from past the end.
+fn past_end(end: CoreEnd, pixel: vec2f) -> f32 {
+    let offset = pixel - end.position;
+    return end.side.x * offset.y - end.side.y * offset.x;
+}
+
+// A step is the quadrilateral between the sides at its ends, which it shares with its neighbours: each point of the ply is
+// drawn once, since the nearer of two texels would be nearer than the ply.
 fn core_hit(a: CoreEnd, b: CoreEnd, pixel: vec2f) -> CoreHit {
     let direction = b.position - a.position;
-    let from_a = pixel - a.position;
-    let unclamped = dot(from_a, direction) / max(dot(direction, direction), 1e-20);
-    let t = clamp(unclamped, 0.0, 1.0);
+    let forward = select(-1.0, 1.0, a.side.x * direction.y - a.side.y * direction.x >= 0.0);
+    let past_a = forward * past_end(a, pixel);
+    let past_b = forward * past_end(b, pixel);
+    let t = clamp(past_a / max(past_a - past_b, 1e-20), 0.0, 1.0);
     let half_width = max(mix(a.half_width, b.half_width, t), 1e-20);
-    let v = dot(from_a - t * direction, mix(a.side, b.side, t)) / half_width;
-    // Past an end only as far as the joint with the next step may gape.
-    let overhang = abs(unclamped - t) * length(direction);
+    let v = dot(pixel - a.position - t * direction, mix(a.side, b.side, t)) / half_width;
     // psi jumps by a whole turn once around the ply.
     let difference = b.turns - a.turns;
     let turns = a.turns + t * (difference - round(difference));
-    return CoreHit(overhang <= 0.2 * half_width + 0.01, t, v, turns);
+    return CoreHit(past_a >= 0.0 && past_b < 0.0, t, v, turns, mix(a.depth_share, b.depth_share, t));
 }
 
-fn core_chance(pixel: vec2u) -> f32 {
-    return unit_from_hash(hash_combine(hash_combine(pixel.x + 1u, pixel.y), frame.sample_index));
+fn core_chance(pixel: vec2u) -> CoreChance {
+    let hash = hash_combine(hash_combine(pixel.x + 1u, pixel.y), frame.sample_index);
+    return CoreChance(unit_from_hash(hash_combine(hash, 1u)), unit_from_hash(hash));
+}
+
+// The visible fiber of a texel: its height, and the offset across it.
+struct CoreSurface {
+    height: f32,
+    offset: f32,
+}
+
+fn core_surface_at(texel: u32) -> CoreSurface {
+    let values = unpack2x16snorm(tables[texel]);
+    return CoreSurface(2.0 * values.x, values.y);
+}
+
+// d(h, v) / d theta of the visible fiber.
+fn core_slopes_at(yarn: Yarn, texel: u32) -> vec2f {
+    return yarn.core_slope * unpack2x16snorm(tables[texel + 1u]);
 }

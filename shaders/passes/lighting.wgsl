@@ -9,7 +9,7 @@ fn material_table(material: Material, table: u32, sin_theta: f32) -> f32 {
     let place = asin(min(abs(sin_theta), 1.0)) / (0.5 * PI) * f32(material.table_size - 1u);
     let index = min(u32(place), material.table_size - 2u);
     let first = material.table + table * material.table_size + index;
-    return mix(tables[first], tables[first + 1u], place - f32(index));
+    return mix(table_value(first), table_value(first + 1u), place - f32(index));
 }
 
 fn normalizers_at(material: Material, sin_theta_i: f32) -> Normalizers {
@@ -37,7 +37,7 @@ fn square_table(first: u32, size: u32, extent: f32, at: vec2f) -> f32 {
             let texel = vec2i(corner) + vec2i(x, y);
             if all(texel >= vec2i(0)) && all(texel < vec2i(i32(size))) {
                 let weight = select(1.0 - share.x, share.x, x == 1) * select(1.0 - share.y, share.y, y == 1);
-                sum += weight * tables[first + u32(texel.y) * size + u32(texel.x)];
+                sum += weight * table_value(first + u32(texel.y) * size + u32(texel.x));
             }
         }
     }

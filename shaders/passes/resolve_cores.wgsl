@@ -14,21 +14,22 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, step: u32, pixel: vec2u) -> Su
     let cb = core_point(yarn, s, pb, ply, frame.viewer);
     let hit = core_hit(core_end(ca), core_end(cb), vec2f(pixel) + 0.5);
     // Steps are short: in between, everything is as good as linear.
-    let layer = core_layer(yarn, mix_detail(scale.ends, mix(t0, t1, hit.t)).fibers, core_chance(pixel));
-    let texel = core_texel(yarn, layer, hit.turns, hit.v);
-    let height = tables[texel];
+    let fibers = mix_detail(scale.ends, mix(t0, t1, hit.t)).fibers;
+    let texel = core_texel(yarn, core_texture(yarn, hit.depth_share, fibers, core_chance(pixel)), hit.turns, hit.v);
+    let surface = core_surface_at(texel);
+    let slopes = core_slopes_at(yarn, texel);
     let toward = mix(ca.toward, cb.toward, hit.t);
     let across = mix(ca.across, cb.across, hit.t);
     let radial = normalize(mix(ca.ply.radial, cb.ply.radial, hit.t));
     let tangential = normalize(mix(ca.ply.tangential, cb.ply.tangential, hit.t));
-    let offset = toward * height + across * hit.v;
-    let winding = (toward * tables[texel + 2u] + across * tables[texel + 3u]) * mix(ca.fiber_rate, cb.fiber_rate, hit.t);
+    let offset = toward * surface.height + across * hit.v;
+    let winding = (toward * slopes.x + across * slopes.y) * mix(ca.fiber_rate, cb.fiber_rate, hit.t);
     let turning = mix(ca.ply.radial_rate, cb.ply.radial_rate, hit.t) * dot(offset, radial)
         + mix(ca.ply.tangential_rate, cb.ply.tangential_rate, hit.t) * dot(offset, tangential);
     let tangent = normalize(mix(ca.velocity, cb.velocity, hit.t) + turning + winding);
     let center = mix(ca.center, cb.center, hit.t);
     let view = direction_to_viewer(frame.viewer, center);
-    let normal = fiber_normal(tangent, mix(ca.side, cb.side, hit.t), view, tables[texel + 1u]);
+    let normal = fiber_normal(tangent, mix(ca.side, cb.side, hit.t), view, surface.offset);
     let tube = Tube(
         mix(pa.position, pb.position, hit.t),
         mix(pa.radius, pb.radius, hit.t),

@@ -1,7 +1,11 @@
 // Precomputed tables of every yarn and material, one after the other.
-@group(0) @binding(8) var<storage, read> tables: array<f32>;
+@group(0) @binding(8) var<storage, read> tables: array<u32>;
+
+fn table_value(index: u32) -> f32 {
+    return bitcast<f32>(tables[index]);
+}
 
 fn fiber_at(yarn: Yarn, ply: PlySeed, index: u32) -> Fiber {
     let row = yarn.fiber_table + 3u * index;
-    return make_fiber(ply, index, vec3f(tables[row], tables[row + 1u], tables[row + 2u]));
+    return make_fiber(ply, index, vec3f(table_value(row), table_value(row + 1u), table_value(row + 2u)));
 }

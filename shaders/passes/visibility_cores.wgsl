@@ -16,8 +16,8 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
                 continue;
             }
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
-            let layer = core_layer(yarn, detail.fibers, core_chance(vec2u(pixel)));
-            let height = tables[core_texel(yarn, layer, hit.turns, hit.v)];
+            let chosen = core_texture(yarn, hit.depth_share, detail.fibers, core_chance(vec2u(pixel)));
+            let height = core_surface_at(core_texel(yarn, chosen, hit.turns, hit.v)).height;
             if height < -1.5 {
                 continue;
             }

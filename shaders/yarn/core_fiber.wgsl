@@ -2,7 +2,8 @@
 //
 // Its texture is a side view of the ply in normalised section coordinates, where the elliptic ply is a disc and its fibers
 // turn rigidly: v runs across, h towards the viewer. Seen from section angle psi the bundle looks as it does from angle 0
-// after a turn by -psi, so that u = theta - psi in turns. (Eq. 3 as printed has inconsistent units.)
+// after a turn by -psi, so that u = theta - psi in turns. (Eq. 3 as printed has inconsistent units.) The texture is several
+// turns long; psi is counted from the yarn's normal, past which the view seldom goes, rather than from the ply's.
 
 struct CorePoint {
     center: vec3f,
@@ -13,8 +14,10 @@ struct CorePoint {
     // Unit direction of +v on the screen, render space.
     side: vec3f,
     half_width: f32,
-    // u without wrap-around: continuous along a segment but for jumps of psi by one turn.
+    // u, continuous along a segment but for jumps by whole turns.
     turns: f32,
+    // How deep the ply is in this view, from 0 (its short half axis) to 1 (its long one).
+    depth_share: f32,
     ply: PlyPoint,
     fiber_rate: f32,
 }
@@ -37,20 +40,46 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     c.half_width = dot(c.across, c.side);
     let start = ply_seed(s.seed, ply).angle_turns;
     let psi = atan2(seen_from.y, seen_from.x) / TAU;
-    c.turns = yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y) + start - psi;
+    var ply_turns = 0.0;
+    if yarn.plies > 1u {
+        ply_turns = yarn.ply_sign * (s.ply_turns + p.length * s.turns.x) + f32(ply) / f32(yarn.plies);
+    }
+    let from_normal = atan2(dot(view, p.binormal), dot(view, p.normal)) / TAU - ply_turns;
+    let whole = round(from_normal - psi);
+    c.turns = yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y) + start - psi - whole;
+    let flatness = yarn.ellipse_long - yarn.ellipse_short;
+    c.depth_share = clamp((length(seen_from * axes) - yarn.ellipse_short) / max(flatness, 1e-6), 0.0, 1.0);
     c.fiber_rate = TAU * yarn.fiber_sign * p.length_rate * s.turns.y;
     return c;
 }
 
-// The layer for a level of detail: it holds at least the fibers that are not drawn, one layer or the next by chance.
-fn core_layer(yarn: Yarn, fibers: f32, chance: f32) -> u32 {
-    return u32(clamp(floor(fibers * f32(yarn.core_layers) - chance), 0.0, f32(yarn.core_layers - 1u)));
+// Which of the textures to look into: one of the two nearest, by chance.
+struct CoreTexture {
+    view: u32,
+    layer: u32,
 }
 
-// Where a texel's four values begin in the table buffer: height, offset across the fiber, d(h, v) / d theta.
-fn core_texel(yarn: Yarn, layer: u32, turns: f32, v: f32) -> u32 {
-    let u_texel = min(u32(fract(turns) * f32(yarn.core_length)), yarn.core_length - 1u);
+// Two numbers in [0, 1).
+struct CoreChance {
+    view: f32,
+    layer: f32,
+}
+
+// The layers on either side of a level of detail hold a few fibers too many and too few: on the average those that are not drawn.
+fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -> CoreTexture {
+    let last_view = f32(yarn.core_views - 1u);
+    let last_layer = f32(yarn.core_layers - 1u);
+    return CoreTexture(
+        u32(clamp(floor(depth_share * last_view + chance.view), 0.0, last_view)),
+        u32(clamp(floor(fibers * f32(yarn.core_layers) + chance.layer), 0.0, last_layer)),
+    );
+}
+
+// Where a texel's two words begin in the table buffer.
+fn core_texel(yarn: Yarn, texture: CoreTexture, turns: f32, v: f32) -> u32 {
+    let u_texel = min(u32(fract(turns / f32(yarn.core_turns)) * f32(yarn.core_length)), yarn.core_length - 1u);
     let v_share = 0.5 + 0.5 * v / yarn.core_half_width;
     let v_texel = u32(clamp(v_share * f32(yarn.core_width), 0.0, f32(yarn.core_width - 1u)));
-    return yarn.core_table + 4u * ((layer * yarn.core_length + u_texel) * yarn.core_width + v_texel);
+    let row = (texture.view * yarn.core_layers + texture.layer) * yarn.core_length + u_texel;
+    return yarn.core_table + 2u * (row * yarn.core_width + v_texel);
 }

@@ -126,6 +126,10 @@ shared! {
         occlusion_size: u32,
         occlusion_extent: f32,
         bound: f32,
+        core_views: u32,
+        core_turns: u32,
+        core_slope: f32,
+        padding: u32,
     }
     Material {
         color_r: Vec3,

@@ -9,18 +9,28 @@ use lisle_precompute::Tables;
 
 use crate::layout;
 
+/// Two values in [−1, 1] as WGSL's `unpack2x16snorm` reads them.
+fn pack_snorm([low, high]: [f32; 2]) -> u32 {
+    let code = |value: f32| u32::from((value.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
+    code(low) | (code(high) << 16)
+}
+
 /// One buffer of tables and the offsets into it.
 #[derive(Default)]
 pub(crate) struct TableBuffer {
-    pub floats: Vec<f32>,
+    pub words: Vec<u32>,
     pub yarns: Vec<layout::Yarn>,
     pub materials: Vec<layout::Material>,
 }
 
 impl TableBuffer {
     fn append(&mut self, values: impl IntoIterator<Item = f32>) -> u32 {
-        let first = self.floats.len() as u32;
-        self.floats.extend(values);
+        self.append_words(values.into_iter().map(f32::to_bits))
+    }
+
+    fn append_words(&mut self, words: impl IntoIterator<Item = u32>) -> u32 {
+        let first = self.words.len() as u32;
+        self.words.extend(words);
         first
     }
 
@@ -30,7 +40,10 @@ impl TableBuffer {
             .flat_map(|i| [fibers.radius[i], fibers.angle_turns[i], fibers.migration_turns[i]].map(|x| x as f32));
         let fiber_table = self.append(rows);
         let core = &tables.core_fiber;
-        let core_table = self.append(core.texels.iter().flatten().copied());
+        let core_slope = core.texels.iter().flat_map(|t| [t[2].abs(), t[3].abs()]).fold(f32::MIN_POSITIVE, f32::max);
+        let core_table = self.append_words(core.texels.iter().flat_map(|[height, offset, dh, dv]| {
+            [pack_snorm([0.5 * height, *offset]), pack_snorm([dh / core_slope, dv / core_slope])]
+        }));
         let shadow_table = self.append(tables.self_shadow.optical_depth.iter().copied());
         let occlusion_table = self.append(tables.occlusion.visibility.iter().copied());
 
@@ -82,6 +95,10 @@ impl TableBuffer {
             occlusion_size: tables.occlusion.size as u32,
             occlusion_extent: tables.occlusion.extent,
             bound: bound(yarn) as f32,
+            core_views: core.views as u32,
+            core_turns: core.turns as u32,
+            core_slope,
+            padding: 0,
         });
     }
 

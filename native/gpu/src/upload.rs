@@ -152,7 +152,7 @@ impl SceneBuffers {
             materials.iter().for_each(|material| tables.add_material(material));
             buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = storage(gpu, "materials", &tables.materials)?;
-            buffers.tables = storage(gpu, "tables of yarns and materials", &tables.floats)?;
+            buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words)?;
             (buffers.kinds, buffers.materials) = (kinds, materials);
         }
         Ok((buffers, which))

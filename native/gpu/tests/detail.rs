@@ -76,47 +76,39 @@ fn zooming_changes_brightness_smoothly_and_keeps_the_area() {
 }
 
 /// A straight yarn of one ply from the side: with single fibers, and with a share of them in the core.
-fn ply(name: &str, lod_pixels: f32, light: Light, radius_pixels: f64) -> Image {
-    const SIZE: [u32; 2] = [240, 24];
-    // Many turns of the twist, so that the mean does not hang on where they begin.
+///
+/// `zoom`: times as many pixels each way; more of them show the fibers without the error of their chords.
+fn ply(name: &str, lod_pixels: f32, light: Light, zoom: u32) -> Image {
+    // Over twenty turns of the twist are seen, so that the mean does not hang on where they begin.
+    let size = [1800 * zoom, 24 * zoom];
     let yarns = yarns_of(curves::straight(400.0, 800), false, 1.0);
     let mut yarn = support::without_flyaways(preset(name));
     yarn.plies = 1;
-    let camera = orthographic(
-        looking(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO),
-        f64::from(SIZE[1]) / radius_pixels,
-        SIZE,
-        [0.0, 0.0],
-    );
+    let camera = orthographic(looking(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO), 4.0, size, [0.0, 0.0]);
     let mut scene = scene(vec![object(&yarns, &yarn)], camera);
     scene.ambient = glam::Vec3::splat(0.2);
     scene.lights = vec![light];
-    draw(&scene, &Settings { samples: 24, filter_width: 1.5, lod_pixels, ..exact(SIZE) })
+    draw(&scene, &Settings { samples: 16 / zoom, filter_width: 1.5, lod_pixels, ..exact(size) })
 }
 
-/// What is asked of a core fiber, and what it does today. Fibers in its texture are round in the ply's NORMALISED section, so that
-/// they are too wide where the ellipse is seen from its short side and too thin from its long one; a yarn of one ply, as here,
-/// shows one side only. The bound keeps it from getting worse; these yarns meet the goal with their outer fibers drawn.
+/// What is asked of a core fiber.
 const GOAL: f64 = 0.03;
-const BOUND: f64 = 0.21;
-const GOOD: [&str; 5] = ["cotton-1", "cotton-2", "rayon-2", "silk-1", "polyester-1"];
 
 #[test]
-fn a_ply_with_a_core_keeps_within_its_bound_of_the_colour_of_its_fibers() {
+fn a_ply_with_a_core_has_the_colour_of_its_fibers() {
     let mut failures = Vec::new();
-    let (mut met, mut cases) = (0, 0);
     for name in PRESET_NAMES {
         for (light_name, light) in [
             ("from the front", sun([0.2, 1.0, -0.3], 3.0)),
             ("from above", sun([0.4, 0.2, -1.0], 3.0)),
             ("no sun, the sky alone", sun([0.3, -1.0, -0.4], 0.0)),
         ] {
-            let full = ply(name, 0.0, light, 6.0);
+            let full = ply(name, 0.0, light, 2);
             for lod_pixels in [1.0, 12.0] {
-                let merged = ply(name, lod_pixels, light, 6.0);
+                let merged = ply(name, lod_pixels, light, 1);
                 let [a, b] = [&merged, &full].map(measure::mean_color);
-                let error = ((a - b).abs() / b).max_element();
-                let area = measure::area(&merged) / measure::area(&full) - 1.0;
+                let error = (a - b).abs().element_sum() / b.element_sum();
+                let area = 4.0 * measure::area(&merged) / measure::area(&full) - 1.0;
                 println!(
                     "{name}, {light_name}, {lod_pixels} px: colour {:+.2} %, area {:+.2} %, {} fibers of {}",
                     100.0 * (a / b - 1.0).element_sum() / 3.0,
@@ -125,16 +117,12 @@ fn a_ply_with_a_core_keeps_within_its_bound_of_the_colour_of_its_fibers() {
                     full.statistics.fiber_segments
                 );
                 assert!(merged.statistics.fiber_segments < full.statistics.fiber_segments, "{name}: no core");
-                cases += 1;
-                met += u32::from(error <= GOAL);
-                let bound = if GOOD.contains(&name) && lod_pixels == 1.0 { GOAL } else { BOUND };
-                if error > bound {
+                if error > GOAL {
                     failures.push(format!("{name}, {light_name}, {lod_pixels} px: {:.2} %", 100.0 * error));
                 }
             }
         }
     }
-    println!("{met} of {cases} cases meet the goal of 3 %");
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
