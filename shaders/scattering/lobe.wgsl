@@ -21,7 +21,7 @@ struct Mixture {
     lobes: array<Lobe, 3>,
 }
 
-const LOGISTIC_SCALE: f32 = 0.63;
+const LOGISTIC_SCALE: f32 = 0.65;
 
 // A logistic density cut off at ±π/2.
 struct Longitude {

@@ -358,7 +358,7 @@ fn a_wrong_shader_is_noticed() {
     let changes = [
         ("4.0 * shape", "3.9 * shape"),
         ("let x = cone_offset / beta;", "let x = 1.01 * cone_offset / beta;"),
-        ("const LOGISTIC_SCALE: f32 = 0.63;", "const LOGISTIC_SCALE: f32 = 0.64;"),
+        ("const LOGISTIC_SCALE: f32 = 0.65;", "const LOGISTIC_SCALE: f32 = 0.66;"),
         ("2.0 * refraction * cos_i * cos_t", "1.98 * refraction * cos_i * cos_t"),
         ("theta - material.beta_tt", "theta + material.beta_tt"),
         ("-across.y, across.x", "across.y, across.x"),

@@ -64,8 +64,8 @@ impl Azimuth {
     }
 }
 
-/// Scale of the logistic density whose ratio to a Gaussian of σ = 1 is least at its greatest: 1.07.
-const LOGISTIC_SCALE: f64 = 0.63;
+/// Scale of the logistic density whose ratio to a Gaussian of σ = 1 is least at its greatest: 1.08.
+const LOGISTIC_SCALE: f64 = 0.65;
 
 /// A logistic density cut off at ±π/2.
 struct Longitude {
@@ -136,5 +136,33 @@ impl Lobe {
             Self::Lambert => FRAC_1_PI * direction.x.max(0.0),
             Self::Even => FRAC_1_PI * UNIFORM / cos_theta,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{gaussian, von_mises, von_mises_scale};
+    use super::*;
+
+    #[test]
+    fn the_straight_azimuth_bounds_a_von_mises_density_of_any_width() {
+        let mut worst = 0.0_f64;
+        for gamma in [0.001, 0.01, 0.1, 0.35, 0.67, 1.0, 1.57] {
+            let (scale, azimuth) = (von_mises_scale(gamma), Azimuth::straight(gamma));
+            for k in 0..=2000 {
+                let cos_phi = -(gamma * 8.0 * f64::from(k) / 2000.0).min(PI).cos();
+                worst = worst.max(von_mises(cos_phi, gamma, scale) / azimuth.density(cos_phi));
+            }
+        }
+        assert!((1.5..1.53).contains(&worst), "{worst}");
+    }
+
+    #[test]
+    fn the_logistic_longitude_bounds_a_gaussian() {
+        let sigma = 0.02;
+        let longitude = Longitude::new(0.1, sigma);
+        let ratio = |x: f64| gaussian(x, sigma) / (TAU.sqrt() * sigma) / longitude.density(0.1 + x);
+        let worst = (0..=1000).map(|k| ratio(8.0 * sigma * f64::from(k) / 1000.0)).fold(0.0, f64::max);
+        assert!((1.08..1.085).contains(&worst), "{worst}");
     }
 }
