@@ -6,6 +6,7 @@ import bpy
 from . import blender_panels, menus, overlay
 from .material import PANELS as MATERIAL_PANELS
 from .object import PANELS as OBJECT_PANELS
+from .presets import CLASSES as PRESET_CLASSES
 from .render import PANELS as RENDER_PANELS
 from .view_layer import PANELS as VIEW_LAYER_PANELS
 
@@ -13,8 +14,8 @@ _PANELS = (*RENDER_PANELS, *VIEW_LAYER_PANELS, *OBJECT_PANELS, *MATERIAL_PANELS)
 
 
 def register():
-    for panel in _PANELS:
-        bpy.utils.register_class(panel)
+    for cls in (*PRESET_CLASSES, *_PANELS):
+        bpy.utils.register_class(cls)
     blender_panels.register()
     overlay.register()
     menus.register()
@@ -24,5 +25,5 @@ def unregister():
     menus.unregister()
     overlay.unregister()
     blender_panels.unregister()
-    for panel in reversed(_PANELS):
-        bpy.utils.unregister_class(panel)
+    for cls in reversed((*PRESET_CLASSES, *_PANELS)):
+        bpy.utils.unregister_class(cls)

@@ -4,6 +4,7 @@
 import bpy
 
 from .panel import LislePanel
+from .presets import LISLE_PT_fiber_presets, LISLE_PT_yarn_presets
 
 
 class _MaterialPanel(LislePanel):
@@ -37,6 +38,9 @@ class _NumbersPanel(_MaterialPanel):
 class LISLE_MATERIAL_PT_yarn(_MaterialPanel, bpy.types.Panel):
     bl_label = "Yarn"
 
+    def draw_header_preset(self, _context):
+        LISLE_PT_yarn_presets.draw_panel_header(self.layout)
+
     def draw(self, context):
         _draw_preset(self.split_layout(), context.material.lisle.yarn)
 
@@ -68,6 +72,9 @@ class LISLE_MATERIAL_PT_yarn_flyaways(_NumbersPanel, bpy.types.Panel):
 
 class LISLE_MATERIAL_PT_fiber(_MaterialPanel, bpy.types.Panel):
     bl_label = "Fiber Shading"
+
+    def draw_header_preset(self, _context):
+        LISLE_PT_fiber_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
         _draw_preset(self.split_layout(), context.material.lisle.fiber)

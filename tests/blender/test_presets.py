@@ -29,3 +29,30 @@ def test_customized_presets_are_the_presets(addon, lisle):
                 if not isinstance(value, int | float):
                     stored = tuple(stored)
                 assert stored == pytest.approx(value, rel=1e-6, abs=1e-9), f"{preset}: {field}"
+
+
+@pytest.mark.blender
+def test_presets_of_ones_own_are_kept_and_come_back(addon, tmp_path, monkeypatch):
+    import bpy
+    import scenes
+
+    monkeypatch.setenv("BLENDER_USER_RESOURCES", str(tmp_path))
+    obj = scenes.curves("Yarn", scenes.line())
+    bpy.context.view_layer.objects.active = obj
+    obj.data.materials.append(bpy.data.materials.new("Wool"))
+    yarn = obj.active_material.lisle.yarn
+    yarn.preset, yarn.customize = "silk-1", True
+    yarn.plies, yarn.loop_r_max = 7, (0.125, 0.5)
+    fiber = obj.active_material.lisle.fiber
+    fiber.customize, fiber.color_tt = True, (0.25, 0.5, 0.75)
+    bpy.ops.lisle.yarn_preset_add(name="My Yarn")
+    bpy.ops.lisle.fiber_preset_add(name="My Fiber")
+    files = {kind: list((tmp_path / "scripts" / "presets" / "lisle" / kind).iterdir()) for kind in ("yarn", "fiber")}
+    assert [path.stem for path in files["yarn"]] == ["My_Yarn"]
+    other = bpy.data.materials.new("Other")
+    obj.data.materials[0] = other
+    for (path,), menu in zip(files.values(), ("LISLE_PT_yarn_presets", "LISLE_PT_fiber_presets"), strict=True):
+        bpy.ops.script.execute_preset(filepath=str(path), menu_idname=menu)
+    assert (other.lisle.yarn.preset, other.lisle.yarn.plies) == ("silk-1", 7)
+    assert tuple(other.lisle.yarn.loop_r_max) == (0.125, 0.5)
+    assert tuple(other.lisle.fiber.color_tt) == (0.25, 0.5, 0.75)
