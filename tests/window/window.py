@@ -17,9 +17,9 @@ TIMEOUT_S = 120
 class Display:
     """An X server without a screen: its pixels lie in a file."""
 
-    def __init__(self, folder):
-        self._folder = folder
-        command = ["Xvfb", "-displayfd", "1", "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24", "-fbdir", str(folder)]
+    def __init__(self, folder, size=SIZE):
+        self._folder, self.size = folder, size
+        command = ["Xvfb", "-displayfd", "1", "-screen", "0", f"{size[0]}x{size[1]}x24", "-fbdir", str(folder)]
         self._server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.name = f":{self._server.stdout.readline().strip()}"
 
@@ -49,7 +49,7 @@ class Window:
     def __init__(self, program, display, blend, folder, backend):
         self._folder, self._count, self.display = folder, 0, display
         environment = program.environment | {"DISPLAY": display.name}
-        command = [program.path, "--gpu-backend", backend, "-p", "0", "0", *map(str, SIZE), blend]
+        command = [program.path, "--gpu-backend", backend, "-p", "0", "0", *map(str, display.size), blend]
         command += ["--python", HERE / "driver.py", "--", folder]
         self.log = folder / "log.txt"
         with self.log.open("w") as log:
