@@ -17,6 +17,7 @@ from .image import Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
 from .material import Material
+from .reference import Fibers, Reference, fibers
 from .renderer import Renderer
 from .scene import Object, Scene
 from .yarn import Yarn
@@ -28,12 +29,14 @@ __all__ = [
     "Cancelled",
     "DeviceError",
     "Error",
+    "Fibers",
     "Image",
     "InputError",
     "Light",
     "Material",
     "Object",
     "Point",
+    "Reference",
     "Renderer",
     "Scene",
     "Spot",
@@ -42,6 +45,7 @@ __all__ = [
     "Yarns",
     "__version__",
     "adapters",
+    "fibers",
     "knit_sleeve",
     "knit_swatch",
     "knit_tube",

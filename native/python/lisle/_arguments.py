@@ -69,3 +69,15 @@ def pixels(name: str, value: object) -> tuple[int, int]:
     if width < 1 or height < 1:
         raise InputError(f"{name}: {width}×{height} pixels hold no picture")
     return width, height
+
+
+def from_top_left(region: tuple[int, int, int, int], size: tuple[int, int]) -> tuple[int, int, int, int]:
+    """Left, top, width, height of a region given by two corners from the bottom left."""
+    try:
+        x0, y0, x1, y1 = (int(value) for value in region)
+    except (TypeError, ValueError):
+        raise InputError(f"region: expected x0, y0, x1, y1 in pixels, got {region!r}") from None
+    width, height = size
+    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
+        raise InputError(f"region: ({x0}, {y0}) to ({x1}, {y1}) is empty or reaches beyond {width}×{height} pixels")
+    return x0, height - y1, x1 - x0, y1 - y0

@@ -18,12 +18,14 @@ __all__ = [
     "adapters",
     "check_material",
     "check_yarn",
+    "fibers",
     "knit_flat",
     "knit_sleeve",
     "knit_tube",
     "load",
     "material_preset",
     "material_presets",
+    "reference",
     "save_exr",
     "save_png",
     "sweater",
@@ -146,6 +148,22 @@ class Renderer:
         progress: Callable[[float], bool | None] | None,
     ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]: ...
 
+def fibers(
+    yarns: Yarns,
+    yarn: Yarn,
+    chord_error: float,
+    object_id: int,
+    progress: Callable[[float], bool | None] | None,
+) -> list[npt.NDArray[Any]]: ...
+def reference(
+    objects: Sequence[Object],
+    lights: Sequence[Light],
+    ambient: tuple[float, float, float],
+    camera: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]],
+    settings: Mapping[str, Any],
+    checkpoint: Path | None,
+    progress: Callable[[float], bool | None] | None,
+) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]: ...
 def load(path: Path, yarn_radius: float | None) -> Yarns: ...
 def save_png(path: Path, combined: npt.NDArray[np.float32], bits: int) -> None: ...
 def save_exr(
@@ -155,6 +173,7 @@ def save_exr(
     normal: npt.NDArray[np.float32],
     tangent: npt.NDArray[np.float32],
     object_id: npt.NDArray[np.uint32],
+    variance: npt.NDArray[np.float32] | None = None,
 ) -> None: ...
 def check_yarn(yarn: Yarn) -> None: ...
 def yarn_presets() -> tuple[str, ...]: ...

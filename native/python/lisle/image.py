@@ -10,7 +10,7 @@ import numpy.typing as npt
 from . import _native
 from .errors import InputError
 
-PASSES = ("combined", "depth", "alpha", "normal", "tangent", "object_id")
+PASSES = ("combined", "depth", "alpha", "normal", "tangent", "object_id", "variance")
 
 
 class Image(Mapping[str, npt.NDArray[Any]]):
@@ -24,6 +24,7 @@ class Image(Mapping[str, npt.NDArray[Any]]):
     | normal | (h, w, 3) f32 | world space |
     | tangent | (h, w, 3) f32 | direction of the fiber, world space |
     | object_id | (h, w) u32 | 0 where nothing is |
+    | variance | (h, w, 3) f32 | of the means in `combined`: standard errors squared; by `Reference` alone |
     """
 
     statistics: dict[str, Any]
@@ -38,13 +39,13 @@ class Image(Mapping[str, npt.NDArray[Any]]):
         try:
             return self._passes[name]
         except KeyError:
-            raise KeyError(f"no pass {name!r}: expected {', '.join(PASSES)}") from None
+            raise KeyError(f"no pass {name!r}: expected {', '.join(self)}") from None
 
     def __iter__(self) -> Iterator[str]:
-        return iter(PASSES)
+        return (name for name in PASSES if name in self._passes)
 
     def __len__(self) -> int:
-        return len(PASSES)
+        return len(self._passes)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -66,7 +67,7 @@ class Image(Mapping[str, npt.NDArray[Any]]):
                 raise InputError(f"bits: a PNG has 8 or 16, not {bits}")
             _native.save_png(path, np.ascontiguousarray(self["combined"]), bits)
         elif suffix == ".exr":
-            passes = {name: np.ascontiguousarray(self[name]) for name in PASSES if name != "alpha"}
+            passes = {name: np.ascontiguousarray(self[name]) for name in self if name != "alpha"}
             _native.save_exr(path, **passes)
         else:
             raise InputError(f"{path}: unknown kind of picture {suffix!r}: expected .png or .exr")

@@ -7,11 +7,10 @@ from . import _native
 from ._arguments import Vector
 from ._native import Adapter, Yarns
 from .camera import Camera
-from .errors import InputError
 from .image import Image
 from .lights import Light
 from .material import Material
-from .scene import Scene
+from .scene import Scene, scene_of
 from .yarn import Yarn
 
 Progress = Callable[[float], bool | None]
@@ -86,7 +85,7 @@ class Renderer:
             DeviceError: the adapter failed.
             Cancelled: `progress` returned False. What `progress` raises comes through as it is.
         """
-        scene = self._scene(what, yarn, material, camera, lights, ambient)
+        scene = scene_of(what, yarn, material, camera, lights, ambient)
         size = arguments.pixels("size", scene.camera.size if size is None else size)
         passes, statistics = self._native.render(
             scene.objects,
@@ -95,7 +94,7 @@ class Renderer:
             (scene.camera.world_from_camera, scene.camera.clip_from_camera),
             {
                 "size": size,
-                "region": None if region is None else _from_top_left(region, size),
+                "region": None if region is None else arguments.from_top_left(region, size),
                 "samples": samples,
                 "shading": shading,
                 "occlusion": occlusion,
@@ -108,36 +107,3 @@ class Renderer:
             progress,
         )
         return Image(passes, statistics)
-
-    @staticmethod
-    def _scene(
-        what: Yarns | Scene,
-        yarn: Yarn | None,
-        material: Material | None,
-        camera: Camera | None,
-        lights: Iterable[Light] | None,
-        ambient: Vector | None,
-    ) -> Scene:
-        if isinstance(what, Scene):
-            given = {"yarn": yarn, "material": material, "camera": camera, "lights": lights, "ambient": ambient}
-            for name, value in given.items():
-                if value is not None:
-                    raise InputError(f"{name}: the scene has its own")
-            return what
-        if not isinstance(what, Yarns):
-            raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
-        scene = Scene(camera or Camera.fit(what), lights or (), (0.0, 0.0, 0.0) if ambient is None else ambient)
-        scene.add(what, yarn, material)
-        return scene
-
-
-def _from_top_left(region: tuple[int, int, int, int], size: tuple[int, int]) -> tuple[int, int, int, int]:
-    """Left, top, width, height of a region given by two corners from the bottom left."""
-    try:
-        x0, y0, x1, y1 = (int(value) for value in region)
-    except (TypeError, ValueError):
-        raise InputError(f"region: expected x0, y0, x1, y1 in pixels, got {region!r}") from None
-    width, height = size
-    if not (0 <= x0 < x1 <= width and 0 <= y0 < y1 <= height):
-        raise InputError(f"region: ({x0}, {y0}) to ({x1}, {y1}) is empty or reaches beyond {width}×{height} pixels")
-    return x0, height - y1, x1 - x0, y1 - y0

@@ -101,6 +101,28 @@ class Scene:
         return added
 
 
+def scene_of(
+    what: Yarns | Scene,
+    yarn: Yarn | None,
+    material: Material | None,
+    camera: Camera | None,
+    lights: Iterable[Light] | None,
+    ambient: Vector | None,
+) -> Scene:
+    """What is to be drawn: a scene as it is, or yarns with the rest or its defaults."""
+    if isinstance(what, Scene):
+        given = {"yarn": yarn, "material": material, "camera": camera, "lights": lights, "ambient": ambient}
+        for name, value in given.items():
+            if value is not None:
+                raise InputError(f"{name}: the scene has its own")
+        return what
+    if not isinstance(what, Yarns):
+        raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
+    scene = Scene(camera or Camera.fit(what), lights or (), (0.0, 0.0, 0.0) if ambient is None else ambient)
+    scene.add(what, yarn, material)
+    return scene
+
+
 def _expect(name: str, argument: str, kind: type[T], value: object) -> T:
     if not isinstance(value, kind):
         raise InputError(f"{name}: {argument}: expected a lisle.{kind.__name__}, got {type(value).__name__}")

@@ -79,3 +79,19 @@ impl From<lisle_gpu::Error> for Failure {
         }
     }
 }
+
+impl From<lisle_reference::Error> for Failure {
+    fn from(error: lisle_reference::Error) -> Self {
+        let message = error.to_string();
+        match error {
+            lisle_reference::Error::Cancelled => Self::Cancelled(message),
+            _ => Self::Input(message),
+        }
+    }
+}
+
+impl From<lisle_reference::fibers::FibersError> for Failure {
+    fn from(error: lisle_reference::fibers::FibersError) -> Self {
+        lisle_reference::Error::from(error).into()
+    }
+}

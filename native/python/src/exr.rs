@@ -10,8 +10,11 @@ use crate::error::Failure;
 use crate::gil::detached;
 use crate::save;
 
-/// Writes all passes, scene-linear, into one part: `R G B A` premultiplied, `Z`, `normal.X Y Z`, `tangent.X Y Z`, `object_id`.
+/// Writes all passes, scene-linear, into one part: `R G B A` premultiplied, `Z`, `normal.X Y Z`, `tangent.X Y Z`, `object_id`; `variance.R G B`
+/// where there is one.
 #[pyfunction]
+#[pyo3(signature = (path, combined, depth, normal, tangent, object_id, variance=None))]
+#[expect(clippy::too_many_arguments, reason = "one a pass")]
 pub fn save_exr(
     py: Python<'_>,
     path: PathBuf,
@@ -20,6 +23,7 @@ pub fn save_exr(
     normal: PyReadonlyArray3<'_, f32>,
     tangent: PyReadonlyArray3<'_, f32>,
     object_id: PyReadonlyArray2<'_, u32>,
+    variance: Option<PyReadonlyArray3<'_, f32>>,
 ) -> Result<(), Failure> {
     let (height, width) = (combined.shape()[0], combined.shape()[1]);
     let colors = slice("combined", &combined, &[height, width, 4])?;
@@ -27,6 +31,7 @@ pub fn save_exr(
     let normals = slice("normal", &normal, &[height, width, 3])?;
     let tangents = slice("tangent", &tangent, &[height, width, 3])?;
     let ids = slice("object_id", &object_id, &[height, width])?;
+    let variances = variance.as_ref().map(|array| slice("variance", array, &[height, width, 3])).transpose()?;
     detached(py, || {
         let mut channels = Vec::new();
         let mut add = |names: &[&str], values: &[f32]| {
@@ -39,6 +44,9 @@ pub fn save_exr(
         add(&["Z"], depths);
         add(&["normal.X", "normal.Y", "normal.Z"], normals);
         add(&["tangent.X", "tangent.Y", "tangent.Z"], tangents);
+        if let Some(variances) = variances {
+            add(&["variance.R", "variance.G", "variance.B"], variances);
+        }
         channels.push(AnyChannel::new("object_id", FlatSamples::U32(ids.to_vec())));
         let channels = AnyChannels::sort(channels.into_iter().collect());
         let layer = Layer::new((width, height), LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);

@@ -10,6 +10,7 @@ mod gil;
 mod load;
 mod material;
 mod png;
+mod reference;
 mod renderer;
 mod save;
 mod scene;
@@ -37,6 +38,8 @@ mod native {
     use super::material::{check_material, material_preset, material_presets};
     #[pymodule_export]
     use super::png::save_png;
+    #[pymodule_export]
+    use super::reference::{fibers, reference};
     #[pymodule_export]
     use super::renderer::Renderer;
     #[pymodule_export]

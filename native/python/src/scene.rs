@@ -120,14 +120,19 @@ pub fn scene(
     })
 }
 
+/// A shading model by its name.
+pub fn shading(name: &str) -> Result<Shading, Failure> {
+    match name {
+        "physical" => Ok(Shading::Physical),
+        "simple" => Ok(Shading::Simple),
+        other => Err(Failure::Input(format!("shading: {other:?} is neither \"physical\" nor \"simple\""))),
+    }
+}
+
 impl SettingsItems {
     /// The settings that they stand for.
     pub fn settings(self) -> Result<Settings, Failure> {
-        let shading = match self.shading.as_str() {
-            "physical" => Shading::Physical,
-            "simple" => Shading::Simple,
-            other => return Err(Failure::Input(format!("shading: {other:?} is neither \"physical\" nor \"simple\""))),
-        };
+        let shading = shading(&self.shading)?;
         let occlusion = match self.occlusion.as_str() {
             "distance" => Occlusion::Distance,
             "table" => Occlusion::Table,

@@ -1,5 +1,6 @@
 //! Bytes and rays per second of a BCC file's fibers: `cargo run --release -p lisle-reference --example rays -- FILE [YARN] [CHORD_ERROR]`.
 
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 use glam::DVec3;
@@ -20,7 +21,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let yarns = Yarns::new(curves, None)?;
 
     let start = Instant::now();
-    let made = fibers(yarns.strands(), &yarn, &Options { chord_error, ..Options::default() })?;
+    let made = fibers(yarns.strands(), &yarn, &Options { chord_error, ..Options::default() }, &mut |_| {
+        ControlFlow::Continue(())
+    })?;
     let segments = made.segments();
     println!("{} fibers, {segments} segments in {:.1} s", made.len(), start.elapsed().as_secs_f64());
     let start = Instant::now();

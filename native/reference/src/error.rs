@@ -3,7 +3,7 @@ use lisle_core::scene::SceneError;
 use lisle_core::yarn::YarnError;
 use thiserror::Error;
 
-use crate::fibers::TooMany;
+use crate::fibers::FibersError;
 
 /// Why a picture could not be made.
 #[derive(Debug, Error)]
@@ -36,13 +36,22 @@ pub enum Error {
         /// What is wrong with it.
         reason: String,
     },
-    /// More fibers than can be counted.
+    /// The fibers cannot be made.
     #[error(transparent)]
-    TooMany(#[from] TooMany),
+    Fibers(FibersError),
     /// A checkpoint that is not of this picture.
     #[error("the checkpoint {0}")]
     Checkpoint(&'static str),
     /// The progress callback asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<FibersError> for Error {
+    fn from(error: FibersError) -> Self {
+        match error {
+            FibersError::Cancelled => Self::Cancelled,
+            other => Self::Fibers(other),
+        }
+    }
 }

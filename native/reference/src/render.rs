@@ -31,14 +31,18 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Checks scene and settings, makes the fibers and finds a hierarchy for them.
+    /// Checks scene and settings, makes the fibers and finds a hierarchy for them. `progress` is called after each curve and can stop the work.
     ///
     /// # Errors
-    /// [`Error`] for whatever cannot be drawn.
-    pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, Error> {
+    /// [`Error`] for whatever cannot be drawn; [`Error::Cancelled`].
+    pub fn new(
+        scene: &Scene,
+        settings: &Settings,
+        progress: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Self, Error> {
         let region = settings.check()?;
         let view = View::new(&scene.camera, settings.size)?;
-        let world = World::new(scene, settings.shading, settings.chord_error)?;
+        let world = World::new(scene, settings.shading, settings.chord_error, progress)?;
         let digest = digest(scene, settings, &world);
         let filter = PixelFilter::new(settings.filter_width);
         Ok(Self { world, view, filter, settings: settings.clone(), region, digest })

@@ -21,7 +21,7 @@ pub struct Settings {
     pub transparent: bool,
     /// Width of the Blackman–Harris pixel filter, pixels; 0 for a point sample at the centre of each pixel.
     pub filter_width: f32,
-    /// How far a chord may depart from its fiber, radii of the fiber.
+    /// How far a chord may depart from its fiber, radii of the fiber, 0.001 to 10.
     pub chord_error: f64,
 }
 
@@ -68,9 +68,6 @@ impl Settings {
         }
         if !(0.0..=100.0).contains(&self.filter_width) {
             return invalid("filter_width", format!("{}: expected 0 to 100 pixels", self.filter_width));
-        }
-        if !(1e-3..=10.0).contains(&self.chord_error) {
-            return invalid("chord_error", format!("{}: expected 0.001 to 10 radii of a fiber", self.chord_error));
         }
         Ok(region)
     }

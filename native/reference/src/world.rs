@@ -1,5 +1,7 @@
 //! A scene made ready for rays: explicit fibers, scattering, lights.
 
+use std::ops::ControlFlow;
+
 use glam::{DMat4, DVec3, Vec3};
 use lisle_core::scene::{Object, Scene, Shading, validate_lights};
 
@@ -29,7 +31,12 @@ struct ObjectFibers {
 
 impl World {
     /// Checks a scene and makes its fibers.
-    pub fn new(scene: &Scene, shading: Shading, chord_error: f64) -> Result<Self, Error> {
+    pub fn new(
+        scene: &Scene,
+        shading: Shading,
+        chord_error: f64,
+        progress: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Self, Error> {
         validate_lights(&scene.lights)?;
         if !scene.ambient.is_finite() || scene.ambient.min_element() < 0.0 {
             let reason = format!("{}: expected finite radiances of at least 0", scene.ambient);
@@ -51,7 +58,7 @@ impl World {
                 object_id: object.id,
                 space_from_object: space_from_world * object.world_from_object,
             };
-            fibers::append(&mut all, object.yarns.strands(), &object.yarn, &options)?;
+            fibers::append(&mut all, object.yarns.strands(), &object.yarn, &options, &mut |_| progress())?;
         }
         Ok(Self {
             assembly: Assembly::new(all),

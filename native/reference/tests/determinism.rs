@@ -11,7 +11,7 @@ use lisle_core::scene::{Light, Scene};
 use lisle_core::yarn::Yarn;
 use lisle_core::{Curves, Yarns};
 use lisle_reference::{Error, Film, Image, Reference, Settings};
-use support::{looking, object, orthographic, scene, sun};
+use support::{looking, object, orthographic, prepare, scene, sun};
 
 const SIZE: [u32; 2] = [40, 30];
 
@@ -47,7 +47,7 @@ fn on_threads(count: usize, seed: u32) -> Image {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build().expect("threads");
     pool.install(|| {
         let settings = Settings { seed, ..settings() };
-        whole(&Reference::new(&cloth(), &settings).expect("a scene")).image()
+        whole(&prepare(&cloth(), &settings)).image()
     })
 }
 
@@ -62,9 +62,9 @@ fn the_picture_depends_on_the_seed_and_not_on_the_threads() {
 #[test]
 fn a_region_is_cut_from_the_whole() {
     let scene = cloth();
-    let all = whole(&Reference::new(&scene, &settings()).expect("a scene")).image();
+    let all = whole(&prepare(&scene, &settings())).image();
     let region = Some([7, 4, 20, 10]);
-    let part = whole(&Reference::new(&scene, &Settings { region, ..settings() }).expect("a scene")).image();
+    let part = whole(&prepare(&scene, &Settings { region, ..settings() })).image();
     assert_eq!(part.size, [20, 10]);
     for y in 0..10 {
         for x in 0..20 {
@@ -78,7 +78,7 @@ fn a_region_is_cut_from_the_whole() {
 #[test]
 fn stopping_and_going_on_changes_no_bit() {
     let scene = cloth();
-    let reference = Reference::new(&scene, &settings()).expect("a scene");
+    let reference = prepare(&scene, &settings());
     let expected = whole(&reference);
     let mut film = reference.film();
     for share in [0.05, 0.4, 0.41, 0.7] {
@@ -87,7 +87,7 @@ fn stopping_and_going_on_changes_no_bit() {
         // Another process goes on with it.
         film = Film::from_bytes(&film.to_bytes()).expect("a checkpoint");
     }
-    let again = Reference::new(&scene, &settings()).expect("a scene");
+    let again = prepare(&scene, &settings());
     again.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
     assert_eq!(film, expected);
 }
@@ -95,8 +95,8 @@ fn stopping_and_going_on_changes_no_bit() {
 #[test]
 fn a_finished_picture_takes_more_samples() {
     let scene = cloth();
-    let few = Reference::new(&scene, &Settings { samples: 2, ..settings() }).expect("a scene");
-    let all = Reference::new(&scene, &settings()).expect("a scene");
+    let few = prepare(&scene, &Settings { samples: 2, ..settings() });
+    let all = prepare(&scene, &settings());
     let mut film = whole(&few);
     all.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
     assert_eq!(film, whole(&all));
@@ -106,7 +106,7 @@ fn a_finished_picture_takes_more_samples() {
 #[test]
 fn a_checkpoint_of_another_picture_is_refused() {
     let scene = cloth();
-    let film = Reference::new(&scene, &settings()).expect("a scene").film();
+    let film = prepare(&scene, &settings()).film();
     let mut darker = cloth();
     darker.ambient *= 0.5;
     for (scene, settings) in [
@@ -115,7 +115,7 @@ fn a_checkpoint_of_another_picture_is_refused() {
         (&scene, Settings { bounces: Some(2), ..settings() }),
         (&scene, Settings { chord_error: 0.2, ..settings() }),
     ] {
-        let other = Reference::new(scene, &settings).expect("a scene");
+        let other = prepare(scene, &settings);
         let result = other.render(&mut film.clone(), &mut |_| ControlFlow::Continue(()));
         assert!(matches!(result, Err(Error::Checkpoint(_))));
     }

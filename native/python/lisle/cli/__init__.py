@@ -1,4 +1,4 @@
-"""The command line: `lisle render`, `lisle info`, `lisle devices`.
+"""The command line: `lisle render`, `lisle reference`, `lisle fibers`, `lisle info`, `lisle devices`.
 
 Exit codes: 0 only when what was asked for lies on disk or on standard output; 1 with one line on standard error for
 what cannot be done; 2 for a command line that makes no sense; 130 when interrupted.
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from .. import __version__
 from ..errors import Error
-from . import devices, info, render
+from . import devices, fibers, info, reference, render
 
 
 def parser() -> argparse.ArgumentParser:
@@ -19,7 +19,7 @@ def parser() -> argparse.ArgumentParser:
     result = argparse.ArgumentParser(prog="lisle", description="Fiber-level cloth from yarn curves.")
     result.add_argument("--version", action="version", version=f"lisle {__version__}")
     commands = result.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (render, info, devices):
+    for command in (render, reference, fibers, info, devices):
         command.add_to(commands)
     return result
 

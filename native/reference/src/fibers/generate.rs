@@ -1,3 +1,5 @@
+use std::ops::{ControlFlow, RangeInclusive};
+
 use glam::DMat4;
 use lisle_core::strands::Strands;
 use lisle_core::yarn::{Fiber, FiberTable, Segment, Twist, Yarn, fiber_seed};
@@ -7,10 +9,13 @@ use thiserror::Error;
 use super::Fibers;
 use super::chain::{Chains, Curve};
 
+/// Chord errors that make sense: below, f32 rounds more away.
+const CHORD_ERRORS: RangeInclusive<f64> = 1e-3..=10.0;
+
 /// How fibers become chains of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// How far a chord may depart from its curve, in radii of the fiber, above 0.
+    /// How far a chord may depart from its curve, in radii of the fiber, 0.001 to 10.
     pub chord_error: f64,
     /// Number of the object, which seeds its fibers: that of [`lisle_core::scene::Object::id`].
     pub object_id: u32,
@@ -24,23 +29,47 @@ impl Default for Options {
     }
 }
 
-/// More points than 32-bit offsets count.
+/// Why there are no fibers.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error("the fibers have more than 4294967295 points: allow a larger chord error, or take fewer curves")]
-pub struct TooMany;
+pub enum FibersError {
+    /// More points than 32-bit offsets count.
+    #[error("the fibers have more than 4294967295 points: allow a larger chord error, or take fewer curves")]
+    TooMany,
+    /// A chord error that is not in its range.
+    #[error("chord_error is not from 0.001 to 10 radii of a fiber")]
+    ChordError,
+    /// The progress callback asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+}
 
-/// Every fiber of every curve, loops and hairs included, nothing merged, in the order of curves, plies and fibers.
+/// Every fiber of every curve, loops and hairs included, nothing merged, in the order of curves, plies and fibers. `yarn` is a valid one
+/// ([`Yarn::validate`]). `progress` is called with the finished share after each curve and can stop the work.
 ///
 /// # Errors
-/// [`TooMany`] for more points than 32-bit offsets count.
-pub fn fibers(strands: &Strands, yarn: &Yarn, options: &Options) -> Result<Fibers, TooMany> {
+/// [`FibersError`].
+pub fn fibers(
+    strands: &Strands,
+    yarn: &Yarn,
+    options: &Options,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Fibers, FibersError> {
     let mut all = Fibers { points: Vec::new(), offsets: vec![0] };
-    append(&mut all, strands, yarn, options)?;
+    append(&mut all, strands, yarn, options, progress)?;
     Ok(all)
 }
 
 /// Adds the fibers of one object to those of others.
-pub(crate) fn append(all: &mut Fibers, strands: &Strands, yarn: &Yarn, options: &Options) -> Result<(), TooMany> {
+pub(crate) fn append(
+    all: &mut Fibers,
+    strands: &Strands,
+    yarn: &Yarn,
+    options: &Options,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<(), FibersError> {
+    if !CHORD_ERRORS.contains(&options.chord_error) {
+        return Err(FibersError::ChordError);
+    }
     let table = FiberTable::new(yarn);
     for index in 0..strands.closed().len() {
         let closed = strands.closed()[index];
@@ -60,13 +89,16 @@ pub(crate) fn append(all: &mut Fibers, strands: &Strands, yarn: &Yarn, options: 
             .collect();
         let count: usize = made.iter().map(|chains| chains.points.len()).sum();
         if all.points.len() + count > u32::MAX as usize {
-            return Err(TooMany);
+            return Err(FibersError::TooMany);
         }
         all.points.reserve(count);
         for chains in made {
             let first = all.points.len() as u32;
             all.points.extend(chains.points);
             all.offsets.extend(chains.ends.iter().map(|end| first + end));
+        }
+        if progress((index + 1) as f64 / strands.closed().len() as f64).is_break() {
+            return Err(FibersError::Cancelled);
         }
     }
     Ok(())

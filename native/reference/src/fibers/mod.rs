@@ -4,7 +4,7 @@ mod chain;
 mod generate;
 
 pub(crate) use generate::append;
-pub use generate::{Options, TooMany, fibers};
+pub use generate::{FibersError, Options, fibers};
 
 use glam::{DVec3, Vec3};
 

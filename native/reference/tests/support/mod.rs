@@ -93,9 +93,14 @@ pub fn scene(object: Object, lights: Vec<Light>, ambient: f32, camera: Camera) -
     Scene { objects: vec![object], lights, ambient: Vec3::splat(ambient), camera }
 }
 
+/// What is ready to be drawn.
+pub fn prepare(scene: &Scene, settings: &Settings) -> Reference {
+    Reference::new(scene, settings, &mut || ControlFlow::Continue(())).expect("a scene")
+}
+
 /// Draws.
 pub fn draw(scene: &Scene, settings: &Settings) -> Image {
-    let reference = Reference::new(scene, settings).expect("a scene");
+    let reference = prepare(scene, settings);
     let mut film = reference.film();
     reference.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
     film.image()
