@@ -69,7 +69,7 @@ pub struct Hit {
 pub struct Surface {
     /// On the surface.
     pub position: DVec3,
-    /// Unit normal of the fiber that the chords stand for: perpendicular to its tangent.
+    /// Unit normal of the fiber that the chords stand for: perpendicular to its tangent, but for its round ends.
     pub normal: DVec3,
     /// Unit normal of the round cone.
     pub cone_normal: DVec3,
@@ -242,9 +242,10 @@ impl Assembly {
         let tangent = self.tangent(segment).lerp(self.tangent(segment + 1), hit.along).normalize();
         let across = from_axis - tangent * from_axis.dot(tangent);
         let cone_normal = from_axis.normalize_or(-ray.direction);
+        let is_end = (hit.along <= 0.0 && !self.has_previous(segment)) || (hit.along >= 1.0 && !self.has_next(segment));
         Surface {
             position,
-            normal: across.normalize_or(cone_normal),
+            normal: if is_end { cone_normal } else { across.normalize_or(cone_normal) },
             cone_normal,
             tangent,
             radius: cone.radius_a + (cone.radius_b - cone.radius_a) * hit.along,

@@ -26,7 +26,7 @@ pub(crate) struct Scattering {
 /// A direction drawn by one part.
 pub(crate) struct Onward {
     pub part: Part,
-    /// Towards the light, in the axes of [`lisle_core::scattering::FiberFrame`].
+    /// Towards the light, in the part's axes: x is the normal of the surface for [`Part::Surface`].
     pub wi: DVec3,
     /// The part's throughput over the density and the part's chance.
     pub weight: DVec3,

@@ -26,18 +26,21 @@ const OFFSET: f64 = 1e-4;
 /// Where a path meets a fiber.
 struct Vertex<'a> {
     surface: Surface,
-    frame: FiberFrame,
+    /// Axes of the fiber, and of the surface: they differ at a fiber's round ends.
+    fiber_frame: FiberFrame,
+    surface_frame: FiberFrame,
     scattering: &'a Scattering,
-    /// Towards where the path comes from, in the frame.
+    /// Towards where the path comes from, in the axes of the fiber.
     wo: DVec3,
 }
 
 impl World {
     fn vertex(&self, ray: &Ray, hit: &Hit) -> Vertex<'_> {
         let surface = self.assembly.surface(ray, hit);
-        let frame = FiberFrame::new(surface.tangent, surface.normal);
-        let wo = frame.local_from_world(-ray.direction);
-        Vertex { surface, frame, scattering: self.scattering(hit.segment), wo }
+        let fiber_frame = FiberFrame::new(surface.tangent, surface.normal);
+        let surface_frame = FiberFrame::new(surface.normal.any_orthonormal_vector(), surface.normal);
+        let wo = fiber_frame.local_from_world(-ray.direction);
+        Vertex { surface, fiber_frame, surface_frame, scattering: self.scattering(hit.segment), wo }
     }
 
     /// Radiance along a ray that has met a fiber, by light scattered at most `bounces` times.
@@ -78,7 +81,7 @@ impl World {
         for light in &self.lights {
             for part in vertex.scattering.parts() {
                 let Some(sample) = light.sample(vertex.lit_point(part), random) else { continue };
-                let wi = vertex.frame.local_from_world(sample.direction);
+                let wi = vertex.frame(part).local_from_world(sample.direction);
                 let scattered = vertex.scattering.evaluate(part, vertex.wo, wi) * sample.irradiance;
                 if scattered == DVec3::ZERO {
                     continue;
@@ -123,9 +126,17 @@ impl Vertex<'_> {
         }
     }
 
-    /// The ray by which a part takes in light from a direction, given in the frame.
+    /// The axes in which a part's directions are given.
+    fn frame(&self, part: Part) -> &FiberFrame {
+        match part {
+            Part::Fiber => &self.fiber_frame,
+            Part::Surface => &self.surface_frame,
+        }
+    }
+
+    /// The ray by which a part takes in light from a direction, given in the part's frame.
     fn leave(&self, part: Part, wi: DVec3, random: &mut Random) -> Ray {
-        let direction = self.frame.world_from_local(wi).normalize();
+        let direction = self.frame(part).world_from_local(wi).normalize();
         let Surface { position, cone_normal, radius, tangent, .. } = self.surface;
         let origin = match part {
             // On the side that faces the direction, if only by rounding.

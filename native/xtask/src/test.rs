@@ -9,8 +9,9 @@ use crate::python::{Environment, any};
 use crate::shell::{cargo, root, say, target, tee};
 use crate::{extension, vulkan, wheel};
 
-/// What the tests of the package need besides it: readers of its files, and the type checker.
-const PYTHON_TESTS: [&str; 6] = ["numpy>=1.26", "pytest>=8", "usd-core>=24.11", "mypy>=1.18", "pillow", "OpenEXR>=3.3"];
+/// What the tests of the package need besides it: readers of its files, the type checker, and another path tracer.
+const PYTHON_TESTS: [&str; 7] =
+    ["numpy>=1.26", "pytest>=8", "usd-core>=24.11", "mypy>=1.18", "pillow", "OpenEXR>=3.3", "mitsuba>=3.6"];
 
 /// Lines by which the runners close.
 const CLOSING: [&str; 4] = ["test result: ", "===", "Success: ", "All checks passed"];
