@@ -120,6 +120,62 @@ def test_what_cannot_be_drawn_is_named(scene, options, message):
         draw(scene, **options)
 
 
+def test_an_even_environment_is_ambient_light(scene):
+    dark = lisle.Scene(scene.camera, [], (0, 0, 0))
+    bright = lisle.Scene(scene.camera, [], (0.7, 0.7, 0.7))
+    for each in (dark, bright):
+        each.add(scene.objects[0].yarns, scene.objects[0].yarn, scene.objects[0].material)
+    even = lisle.Environment(np.full((8, 16, 3), 0.7))
+    a = draw(dark, environment=even, samples=32, transparent=False)
+    b = draw(bright, samples=32, transparent=False)
+
+    def deviation(a, b):
+        error = np.sqrt(a["variance"].sum(dtype=np.float64) + b["variance"].sum(dtype=np.float64))
+        return (a["combined"][..., :3].sum(dtype=np.float64) - b["combined"][..., :3].sum(dtype=np.float64)) / error
+
+    assert abs(deviation(a, b)) < 4
+    assert np.allclose(a["combined"][a["object_id"] == 0][0], (0.7, 0.7, 0.7, 1.0), atol=0.3)
+    brighter = lisle.Environment(np.full((8, 16, 3), 0.8))
+    assert abs(deviation(draw(dark, environment=brighter, samples=32, transparent=False), b)) > 4
+
+
+def test_a_bright_texel_is_a_sun(scene):
+    """A texel of known solid angle, seen from afar, against a sun of the same irradiance from its middle."""
+    height, width, row, column = 64, 128, 14, 90
+    z = np.cos(np.pi * np.array([row, row + 1]) / height)
+    solid_angle = 2 * np.pi / width * (z[0] - z[1])
+    radiance = np.zeros((height, width, 3))
+    radiance[row, column] = 3.0 / solid_angle
+    longitude, latitude = (0.5 - (column + 0.5) / width) * 2 * np.pi, np.arcsin(z.mean())
+    toward = np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)])
+
+    def lit(lights, environment=None):
+        dark = lisle.Scene(scene.camera, lights, (0, 0, 0))
+        dark.add(scene.objects[0].yarns, scene.objects[0].yarn, scene.objects[0].material)
+        return draw(dark, environment=environment, samples=32, bounces=1)["combined"][..., 0].mean(dtype=np.float64)
+
+    expected = lit([lisle.Sun(direction=-toward, strength=3.0)])
+    # Interpolation spreads the texel over its neighbours, and narrow lobes see it no point: 3 %.
+    assert lit([], lisle.Environment(radiance)) == pytest.approx(expected, rel=0.03)
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    assert lit([lisle.Sun(direction=-turn @ toward, strength=3.0)]) == pytest.approx(
+        lit([], lisle.Environment(radiance, turn)), rel=0.03
+    )
+    assert lit([], lisle.Environment(radiance, turn)) != pytest.approx(expected, rel=0.03)
+
+
+def test_an_environment_that_is_none_is_refused(scene):
+    for wrong in (np.zeros((4, 4)), np.zeros((4, 4, 4))):
+        with pytest.raises(lisle.InputError, match="radiance"):
+            lisle.Environment(wrong)
+    with pytest.raises(lisle.InputError, match="environment"):
+        draw(scene, environment=np.zeros((4, 8, 3)))
+    with pytest.raises(lisle.InputError, match=r"texel \(0, 0\)"):
+        draw(scene, environment=lisle.Environment(np.full((4, 8, 3), np.nan)))
+    with pytest.raises(lisle.InputError, match="rotation"):
+        draw(scene, environment=lisle.Environment(np.ones((4, 8, 3)), np.zeros((3, 3))))
+
+
 def test_an_exr_keeps_the_variance(scene, tmp_path):
     OpenEXR = pytest.importorskip("OpenEXR", reason="OpenEXR is not installed")
     image = draw(scene)

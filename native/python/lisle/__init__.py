@@ -17,7 +17,7 @@ from .image import Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
 from .material import Material
-from .reference import Fibers, Reference, fibers
+from .reference import Environment, Fibers, Reference, fibers
 from .renderer import Renderer
 from .scene import Object, Scene
 from .yarn import Yarn
@@ -28,6 +28,7 @@ __all__ = [
     "Camera",
     "Cancelled",
     "DeviceError",
+    "Environment",
     "Error",
     "Fibers",
     "Image",

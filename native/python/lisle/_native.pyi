@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from .lights import Light
 from .material import Material
+from .reference import Environment
 from .scene import Object
 from .yarn import Yarn
 
@@ -159,6 +160,7 @@ def reference(
     objects: Sequence[Object],
     lights: Sequence[Light],
     ambient: tuple[float, float, float],
+    environment: Environment | None,
     camera: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]],
     settings: Mapping[str, Any],
     checkpoint: Path | None,

@@ -1,6 +1,7 @@
 """The reference: every fiber explicit, and light scattered between them as often as it likes."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -67,6 +68,32 @@ def fibers(
     return Fibers(*_native.fibers(yarns, yarn or Yarn.preset(DEFAULT_YARN), chord_error, object_id, progress))
 
 
+@dataclass(frozen=True, eq=False)
+class Environment:
+    """Light from all sides, as a picture of the sky in equal steps of longitude and latitude, as Blender has it.
+
+    The direction (x, y, z) lies at ½ − atan2(y, x) / 2π of the width from the left, and asin z / π + ½ of the height
+    from the bottom.
+
+    Args:
+        radiance: (h, w, 3), scene-linear, row 0 at the top.
+        world_from_environment: 3×3, a rotation.
+    """
+
+    radiance: npt.NDArray[np.float32]
+    world_from_environment: npt.NDArray[np.float64] = field(default_factory=lambda: np.eye(3))
+
+    def __post_init__(self) -> None:
+        radiance = np.ascontiguousarray(self.radiance, np.float32)
+        if radiance.ndim != 3 or radiance.shape[2] != 3:
+            raise InputError(f"Environment.radiance: expected shape (h, w, 3), got {radiance.shape}")
+        matrix = np.ascontiguousarray(self.world_from_environment, np.float64)
+        if matrix.shape != (3, 3):
+            raise InputError(f"Environment.world_from_environment: expected a 3×3 matrix, got shape {matrix.shape}")
+        object.__setattr__(self, "radiance", radiance)
+        object.__setattr__(self, "world_from_environment", matrix)
+
+
 class Reference:
     """A path tracer through explicit fibers: slow, and right.
 
@@ -86,6 +113,7 @@ class Reference:
         camera: Camera | None = None,
         lights: Iterable[Light] | None = None,
         ambient: Vector | None = None,
+        environment: Environment | None = None,
         samples: int = 64,
         size: tuple[int, int] | None = None,
         shading: str = "physical",
@@ -109,12 +137,13 @@ class Reference:
             camera: viewpoint; `Camera.fit(yarns)` unless given.
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
+            environment: light from all sides, which is added to `ambient`.
             samples: independent paths per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
             bounces: most times that light is scattered, 1 for what the renderer draws; any number unless given.
             region: part of the frame to draw, x0, y0, x1, y1 in pixels from the bottom left, x1 and y1 exclusive.
-            transparent: leaves the background transparent; otherwise it is the ambient radiance.
+            transparent: leaves the background transparent; otherwise it is that of ambient and environment.
             filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
             chord_error: how far a chord may depart from its fiber, in radii of the fiber, 0.001 to 10.
             seed: of all random numbers.
@@ -128,11 +157,14 @@ class Reference:
             Cancelled: `progress` returned False. What `progress` raises comes through as it is.
         """
         scene = scene_of(what, yarn, material, camera, lights, ambient)
+        if not isinstance(environment, Environment | None):
+            raise InputError(f"environment: expected a lisle.Environment, got {type(environment).__name__}")
         size = arguments.pixels("size", scene.camera.size if size is None else size)
         passes, statistics = _native.reference(
             scene.objects,
             scene.lights,
             scene.ambient,
+            environment,
             (scene.camera.world_from_camera, scene.camera.clip_from_camera),
             {
                 "size": size,

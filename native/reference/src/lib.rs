@@ -3,6 +3,7 @@
 
 pub mod assembly;
 pub mod cone;
+mod environment;
 mod error;
 pub mod fibers;
 mod film;
@@ -14,6 +15,7 @@ mod render;
 mod settings;
 mod world;
 
+pub use environment::Environment;
 pub use error::Error;
 pub use film::{Film, Image};
 pub use render::Reference;

@@ -6,6 +6,7 @@ use glam::{DMat4, DVec3};
 use lisle_core::sampling::{basis, disc, sphere};
 use lisle_core::scene::{Cone, Light};
 
+use crate::environment::Sky;
 use crate::random::Random;
 
 /// A direction drawn towards a light.
@@ -35,6 +36,8 @@ pub(crate) enum Emitter {
     Point { center: DVec3, power: DVec3, radius: f64, cone: Option<Cone> },
     /// One side of a parallelogram or an ellipse.
     Area(Box<Panel>),
+    /// All around, infinitely far.
+    Sky(Box<Sky>),
 }
 
 /// An area light.
@@ -85,6 +88,7 @@ impl Emitter {
             Self::Sun { tangent, .. } => *tangent > 0.0,
             Self::Point { radius, .. } => *radius > 0.0,
             Self::Area(panel) => panel.area > 0.0,
+            Self::Sky(_) => true,
         }
     }
 
@@ -143,7 +147,18 @@ impl Emitter {
                     pdf: distance_squared / (area * cos),
                 })
             }
+            Self::Sky(sky) => {
+                let direction = sky.sample(uniform);
+                let pdf = sky.pdf(direction);
+                let irradiance = sky.radiance(direction) / pdf;
+                (pdf > 0.0).then_some(LightSample { direction, distance: f64::INFINITY, irradiance, pdf })
+            }
         }
+    }
+
+    /// Radiance of what lies behind everything, in a direction.
+    pub fn background(&self, direction: DVec3) -> DVec3 {
+        if let Self::Sky(sky) = self { sky.radiance(direction) } else { DVec3::ZERO }
     }
 
     /// What a ray of unit direction meets of it.
@@ -177,6 +192,10 @@ impl Emitter {
                 let is_inside = if *ellipse { at.length() <= 0.5 } else { at.abs().max_element() <= 0.5 };
                 let radiance = *power / (PI * area);
                 is_inside.then(|| Glow { distance, radiance, pdf: distance * distance / (area * cos) })
+            }
+            Self::Sky(sky) => {
+                let (radiance, pdf) = (sky.radiance(direction), sky.pdf(direction));
+                Some(Glow { distance: f64::INFINITY, radiance, pdf })
             }
         }
     }
@@ -212,4 +231,92 @@ fn spot(cone: Option<&Cone>, to_center: DVec3) -> f64 {
     let cos = -to_center.normalize_or_zero().dot(cone.direction.normalize());
     let x = ((cos - edge) / (full - edge)).clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Lights with extent, and a point that each shines on.
+    fn lights() -> Vec<(&'static str, Light)> {
+        let power = Vec3::splat(50.0);
+        let turned = DMat4::from_translation(DVec3::new(0.2, 0.1, 3.0)) * DMat4::from_rotation_x(0.4);
+        let point = |position, radius, cone| Light::Point { position, power, radius, cone };
+        let cone = Cone { direction: DVec3::new(0.1, 0.0, -1.0), angle_rad: 0.9, blend: 0.5 };
+        let area = |ellipse| Light::Area { world_from_light: turned, size: [2.0, 1.0], ellipse, power };
+        vec![
+            ("sun", Light::Sun { direction: DVec3::new(0.3, 0.2, -1.0), irradiance: Vec3::ONE, angle_rad: 0.6 }),
+            ("sphere", point(DVec3::new(0.5, 0.4, 2.0), 0.7, None)),
+            ("sphere about the point", point(DVec3::new(0.1, 0.0, 0.2), 1.0, None)),
+            ("spot", point(DVec3::new(0.1, 0.2, 3.0), 0.5, Some(cone))),
+            ("rectangle", area(false)),
+            ("ellipse", area(true)),
+        ]
+    }
+
+    /// ∫ radiance dω and ∫ pdf dω by even directions, the first also by the light's own.
+    fn integrals(emitter: &Emitter) -> [f64; 3] {
+        let mut random = Random::new(1, 2, 3);
+        let n = 400_000;
+        let (mut met, mut density, mut drawn) = (0.0, 0.0, 0.0);
+        for _ in 0..n {
+            if let Some(glow) = emitter.meet(DVec3::ZERO, sphere(random.pair())) {
+                met += glow.radiance.x;
+                density += glow.pdf;
+            }
+            drawn += emitter.sample(DVec3::ZERO, &mut random).map_or(0.0, |sample| sample.irradiance.x);
+        }
+        let whole = 4.0 * PI / f64::from(n);
+        [met * whole, density * whole, drawn / f64::from(n)]
+    }
+
+    #[test]
+    fn a_light_is_as_bright_when_drawn_as_when_met() {
+        for (name, light) in lights() {
+            let [met, density, drawn] = integrals(&Emitter::new(&light, DVec3::ZERO));
+            println!("{name}: {met} met, {drawn} drawn, density {density}");
+            assert!((met / drawn - 1.0).abs() < 0.03, "{name}: {met} met, {drawn} drawn");
+            assert!((density - 1.0).abs() < 0.03, "{name}: {density}");
+        }
+    }
+
+    #[test]
+    fn samples_have_the_radiance_and_density_of_what_is_met_there() {
+        for (name, light) in lights() {
+            let emitter = Emitter::new(&light, DVec3::new(1.0, 2.0, 3.0));
+            let point = DVec3::new(-1.0, -2.0, -3.0);
+            let mut random = Random::new(4, 5, 6);
+            for _ in 0..100 {
+                let Some(sample) = emitter.sample(point, &mut random) else { continue };
+                // A direction at the rim may miss by rounding; a little inwards none does.
+                let Some(glow) = emitter.meet(point, sample.direction) else { continue };
+                assert!((glow.pdf / sample.pdf - 1.0).abs() < 1e-6, "{name}");
+                assert!((glow.radiance.x / (sample.irradiance.x * sample.pdf) - 1.0).abs() < 1e-6, "{name}");
+                assert!(
+                    glow.distance == sample.distance || (glow.distance / sample.distance - 1.0).abs() < 1e-6,
+                    "{name}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn small_lights_have_the_irradiance_of_points() {
+        let (power, height) = (Vec3::splat(50.0), 4.0);
+        let position = DVec3::Z * height;
+        let mut random = Random::new(7, 8, 9);
+        let of_point = 50.0 / (4.0 * PI * height * height);
+        for radius in [0.0, 0.01] {
+            let emitter = Emitter::new(&Light::Point { position, power, radius, cone: None }, DVec3::ZERO);
+            let sample = emitter.sample(DVec3::ZERO, &mut random).expect("light");
+            assert!((sample.irradiance.x / of_point - 1.0).abs() < 1e-4);
+        }
+        // A one-sided square sends P/π to where it faces, by the square of the distance.
+        let panel =
+            Light::Area { world_from_light: DMat4::from_translation(position), size: [0.01; 2], ellipse: false, power };
+        let sample = Emitter::new(&panel, DVec3::ZERO).sample(DVec3::ZERO, &mut random).expect("light");
+        assert!((sample.irradiance.x / (4.0 * of_point) - 1.0).abs() < 1e-3);
+        assert!(Emitter::new(&panel, DVec3::ZERO).sample(DVec3::Z * 8.0, &mut random).is_none(), "its back is dark");
+    }
 }

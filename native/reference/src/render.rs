@@ -9,6 +9,7 @@ use lisle_core::view::View;
 use rayon::prelude::*;
 
 use crate::assembly::{Hit, Ray};
+use crate::environment::Environment;
 use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
 use crate::random::Random;
 use crate::world::World;
@@ -37,13 +38,14 @@ impl Reference {
     /// [`Error`] for whatever cannot be drawn; [`Error::Cancelled`].
     pub fn new(
         scene: &Scene,
+        environment: Option<&Environment>,
         settings: &Settings,
         progress: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Self, Error> {
         let region = settings.check()?;
         let view = View::new(&scene.camera, settings.size)?;
-        let world = World::new(scene, settings.shading, settings.chord_error, progress)?;
-        let digest = digest(scene, settings, &world);
+        let world = World::new(scene, environment, settings.shading, settings.chord_error, progress)?;
+        let digest = digest(scene, environment, settings, &world);
         let filter = PixelFilter::new(settings.filter_width);
         Ok(Self { world, view, filter, settings: settings.clone(), region, digest })
     }
@@ -107,9 +109,10 @@ impl Reference {
         let number = u64::from(y) * u64::from(self.settings.size[0]) + u64::from(x);
         let mut random = Random::new(self.settings.seed, number, sample);
         let offset = self.filter.offset(random.pair());
-        let Some((ray, hit, _)) = self.meet([center[0] + offset[0], center[1] + offset[1]]) else {
+        let place = [center[0] + offset[0], center[1] + offset[1]];
+        let Some((ray, hit, _)) = self.meet(place) else {
             if !self.settings.transparent {
-                let radiance = self.world.ambient.to_array();
+                let radiance = self.world.background(self.view.ray(place).1.normalize()).to_array();
                 pixel.add(&Sample { radiance, alpha: 1.0, ..Sample::default() });
             }
             return;
@@ -136,17 +139,19 @@ impl Reference {
 }
 
 /// Tells pictures apart: everything but the number of samples.
-fn digest(scene: &Scene, settings: &Settings, world: &World) -> u64 {
+fn digest(scene: &Scene, environment: Option<&Environment>, settings: &Settings, world: &World) -> u64 {
     let Settings { size, region, seed, bounces, shading, transparent, filter_width, .. } = settings;
     let settings = format!("{size:?} {region:?} {seed} {bounces:?} {shading:?} {transparent} {filter_width}");
+    let turned = environment.map(|environment| (environment.size, environment.world_from_environment));
     let materials: Vec<_> = scene.objects.iter().map(|object| (object.id, &object.material)).collect();
     let text = format!(
-        "{settings} {materials:?} {:?} {:?} {:?} {:?}",
+        "{settings} {materials:?} {turned:?} {:?} {:?} {:?} {:?}",
         scene.lights, scene.ambient, scene.camera, world.origin
     );
     // FNV-1a, 64 bits, over words where there are many.
     let step = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
     let hash = text.bytes().map(u64::from).fold(0xcbf2_9ce4_8422_2325, step);
-    let words = world.assembly.points().iter().flatten().map(|value| u64::from(value.to_bits()));
+    let texels = environment.iter().flat_map(|environment| environment.radiance.iter().flatten());
+    let words = world.assembly.points().iter().flatten().chain(texels).map(|value| u64::from(value.to_bits()));
     words.fold(hash, step)
 }

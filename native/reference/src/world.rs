@@ -7,6 +7,7 @@ use lisle_core::scene::{Object, Scene, Shading, validate_lights};
 
 use crate::Error;
 use crate::assembly::Assembly;
+use crate::environment::{Environment, Sky};
 use crate::fibers::{self, Fibers};
 use crate::light::Emitter;
 use crate::material::Scattering;
@@ -33,6 +34,7 @@ impl World {
     /// Checks a scene and makes its fibers.
     pub fn new(
         scene: &Scene,
+        environment: Option<&Environment>,
         shading: Shading,
         chord_error: f64,
         progress: &mut dyn FnMut() -> ControlFlow<()>,
@@ -43,6 +45,7 @@ impl World {
             return Err(Error::Input { what: "ambient", reason });
         }
         scene.objects.iter().try_for_each(check)?;
+        environment.map_or(Ok(()), Environment::check)?;
         let origin = middle(&scene.objects);
         let space_from_world = DMat4::from_translation(-origin);
         let mut all = Fibers { points: Vec::new(), offsets: vec![0] };
@@ -60,10 +63,11 @@ impl World {
             };
             fibers::append(&mut all, object.yarns.strands(), &object.yarn, &options, &mut |_| progress())?;
         }
+        let sky = environment.and_then(Sky::new).map(|sky| Emitter::Sky(Box::new(sky)));
         Ok(Self {
             assembly: Assembly::new(all),
             objects,
-            lights: scene.lights.iter().map(|light| Emitter::new(light, origin)).collect(),
+            lights: scene.lights.iter().map(|light| Emitter::new(light, origin)).chain(sky).collect(),
             ambient: scene.ambient.as_dvec3(),
             origin,
         })
@@ -71,6 +75,11 @@ impl World {
 
     fn object(&self, segment: u32) -> &ObjectFibers {
         &self.objects[self.objects.partition_point(|o| o.first_point <= segment) - 1]
+    }
+
+    /// Radiance of what lies behind everything, in a direction.
+    pub fn background(&self, direction: DVec3) -> DVec3 {
+        self.ambient + self.lights.iter().map(|light| light.background(direction)).sum::<DVec3>()
     }
 
     /// How the fiber of a segment scatters.

@@ -95,7 +95,7 @@ pub fn scene(object: Object, lights: Vec<Light>, ambient: f32, camera: Camera) -
 
 /// What is ready to be drawn.
 pub fn prepare(scene: &Scene, settings: &Settings) -> Reference {
-    Reference::new(scene, settings, &mut || ControlFlow::Continue(())).expect("a scene")
+    Reference::new(scene, None, settings, &mut || ControlFlow::Continue(())).expect("a scene")
 }
 
 /// Draws.
