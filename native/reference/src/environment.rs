@@ -198,7 +198,8 @@ mod tests {
         assert!((sky.radiance(DVec3::new(0.5, 0.5, 0.5_f64.sqrt())).x - 1.0).abs() < 1e-6);
         assert!(sky.radiance(DVec3::new(-0.5, -0.5, 0.5_f64.sqrt())).x < 1e-6);
         let lit = |i: &u32| sky.radiance(sky.sample([unit(*i, 0), unit(*i, 1)])).x > 0.0;
-        assert!((0..1000).filter(lit).count() > 900);
+        // The far halves of the neighbours are drawn as well, a sixth of all.
+        assert!((0..1000).filter(lit).count() > 750);
     }
 
     #[test]
