@@ -245,11 +245,41 @@ def test_a_smaller_chord_error_takes_more_points_and_lies_closer():
     assert many > 1.5 * few
 
 
+def test_a_far_view_takes_fewer_fibers_of_the_same_area():
+    yarns = lisle.Yarns(line(40, 0.1), [0, 40], yarn_radius=0.1)
+    yarn = lisle.Yarn.preset("cotton-1")
+
+    def area(fibers):
+        """Of all chains as ribbons."""
+        a, b = fibers.points[:-1], fibers.points[1:]
+        lengths = np.linalg.norm((b - a).astype(np.float64), axis=1) * (fibers.radii[:-1] + fibers.radii[1:])
+        between = np.ones(len(lengths), bool)
+        between[fibers.offsets[1:-1] - 1] = False
+        return lengths[between].sum()
+
+    everything = lisle.fibers(yarns, yarn)
+    near = lisle.Camera.fit(yarns, size=(20_000, 10_000))
+    assert area(lisle.fibers(yarns, yarn, camera=near)) == pytest.approx(area(everything), rel=0.01)
+    points = []
+    for width in (400, 100, 25):
+        far = lisle.Camera.fit(yarns, size=(width, max(width // 2, 1)))
+        made = lisle.fibers(yarns, yarn, camera=far)
+        points.append(len(made.points))
+        assert area(made) == pytest.approx(area(everything), rel=0.1)
+        # None is thinner than the limit but where it fades or tapers.
+        pixel = 4.0 / width
+        assert np.median(made.radii) >= 0.45 * pixel
+    assert points == sorted(points, reverse=True)
+    assert points[-1] < 0.1 * len(everything.points)
+
+
 def test_fibers_refuse_what_makes_no_sense(swatch):
     with pytest.raises(lisle.InputError, match="chord_error"):
         lisle.fibers(swatch, chord_error=-1)
     with pytest.raises(lisle.InputError, match="object_id"):
         lisle.fibers(swatch, object_id=0)
+    with pytest.raises(lisle.InputError, match="lod_pixels"):
+        lisle.fibers(swatch, camera=lisle.Camera.fit(swatch), lod_pixels=0)
     with pytest.raises(lisle.InputError, match="Yarns"):
         lisle.fibers("swatch")
     with pytest.raises(lisle.Cancelled):
@@ -287,6 +317,11 @@ def test_fibers_writes_a_stage(cloth, tmp_path):  # noqa: F811
     assert np.array_equal(np.array(prim.GetPointsAttr().Get()), made.points)
     assert np.array_equal(np.array(prim.GetWidthsAttr().Get()), 2 * made.radii)
     assert np.array_equal(np.array(prim.GetCurveVertexCountsAttr().Get()), np.diff(made.offsets))
+    size = output.stat().st_size
+    assert (
+        run("fibers", cloth, "-o", output, "--yarn", "silk-1", "--lod-pixels", "2", "--size", "64x48").returncode == 0
+    )
+    assert output.stat().st_size < 0.5 * size
     assert run("fibers", cloth, "-o", tmp_path / "fibers.obj").returncode == 1
     assert run("fibers", cloth, "-o", tmp_path / "no" / "fibers.usdc").returncode == 1
     assert not (tmp_path / "no").exists()

@@ -132,6 +132,12 @@ impl View {
         let far = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(self.far);
         (near, far.max(near + 1e-6 * near.abs().max(1e-6)))
     }
+    /// Pixels per unit of length at a point, render space; no nearer than the near plane.
+    pub fn pixels_per_unit_at(&self, point: DVec3) -> f64 {
+        let w = self.rows[2].dot(point.extend(1.0));
+        self.pixels_per_unit / if self.orthographic { w } else { w.max(self.near) }
+    }
+
     /// Where the ray through a place on the frame (pixels from the top left) lies at distance 0 along the view axis, and how far it
     /// moves per unit of that distance: a distance along the ray in units of its direction is a depth.
     pub fn ray(&self, pixel: [f64; 2]) -> (DVec3, DVec3) {
@@ -182,6 +188,19 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn sizes_are_those_of_pixels() {
+        for view in views() {
+            let (origin, direction) = view.ray([160.0, 100.0]);
+            let (beside, onward) = view.ray([161.0, 100.0]);
+            let point = origin + direction * 6.0;
+            // The pixels of these views are as wide as high.
+            let found = 1.0 / view.pixels_per_unit_at(point);
+            let expected = (beside + onward * 6.0).distance(point);
+            assert!((found / expected - 1.0).abs() < 1e-3, "{found} for {expected}");
         }
     }
 

@@ -154,6 +154,7 @@ def fibers(
     yarn: Yarn,
     chord_error: float,
     object_id: int,
+    view: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[int, int], float] | None,
     progress: Callable[[float], bool | None] | None,
 ) -> list[npt.NDArray[Any]]: ...
 def reference(

@@ -45,15 +45,20 @@ def fibers(
     *,
     chord_error: float = CHORD_ERROR,
     object_id: int = 1,
+    camera: Camera | None = None,
+    lod_pixels: float = 1.0,
     progress: Progress | None = None,
 ) -> Fibers:
-    """All fibers of yarns, loops and hairs included, as any other renderer can draw them.
+    """The fibers of yarns, loops and hairs included, as any other renderer can draw them.
 
     Args:
         yarns: the curves.
         yarn: the procedural yarn; "cotton-1" unless given.
         chord_error: how far a chord may depart from its fiber, in radii of the fiber, 0.001 to 10.
         object_id: that of the object in a scene, which seeds its fibers; a scene's first object has 1.
+        camera: makes fewer fibers where this view does not tell them apart, each as much wider, and chords up to a
+            quarter of a pixel off; all fibers unless given.
+        lod_pixels: with a camera, the width in pixels below which fibers are merged.
         progress: called now and then with the finished fraction; returning False cancels.
 
     Raises:
@@ -65,7 +70,14 @@ def fibers(
     if not 0 < object_id < 2**32:
         raise InputError(f"object_id {object_id} is not from 1 to 2³² − 1")
     chord_error = arguments.number("chord_error", chord_error)
-    return Fibers(*_native.fibers(yarns, yarn or Yarn.preset(DEFAULT_YARN), chord_error, object_id, progress))
+    view = None
+    if camera is not None:
+        lod_pixels = arguments.number("lod_pixels", lod_pixels)
+        if not 0.0 < lod_pixels <= 100.0:
+            raise InputError(f"lod_pixels: {lod_pixels} is not above 0 and at most 100 pixels")
+        view = (camera.world_from_camera, camera.clip_from_camera, camera.size, lod_pixels)
+    yarn = yarn or Yarn.preset(DEFAULT_YARN)
+    return Fibers(*_native.fibers(yarns, yarn, chord_error, object_id, view, progress))
 
 
 @dataclass(frozen=True, eq=False)

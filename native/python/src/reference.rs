@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::DMat3;
+use lisle_core::view::View;
 use lisle_gpu::{Scene, Shading};
-use lisle_reference::fibers::{Options, fibers as make_fibers};
+use lisle_reference::fibers::{Detail, Options, fibers as make_fibers};
 use lisle_reference::{Environment, Film, Image, Reference, Settings};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -15,7 +16,7 @@ use pyo3::types::PyDict;
 use crate::convert::{array, field_error};
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
-use crate::scene::{LightFields, ObjectFields, Rows, scene, shading};
+use crate::scene::{LightFields, ObjectFields, Rows, camera, scene, shading};
 use crate::yarn::extract_yarn;
 use crate::yarns::Yarns;
 
@@ -88,12 +89,18 @@ pub fn fibers<'py>(
     yarn: &Bound<'py, PyAny>,
     chord_error: f64,
     object_id: u32,
+    view: Option<(Rows, Rows, [u32; 2], f64)>,
     progress: Option<Py<PyAny>>,
 ) -> Result<FiberArrays<'py>, Failure> {
     let yarn = extract_yarn(yarn)?;
     yarn.validate()?;
     let yarns = yarns.get().yarns.clone();
-    let options = Options { chord_error, object_id, ..Options::default() };
+    let detail = view.map(|(world_from_camera, clip_from_camera, size, lod_pixels)| {
+        let camera = camera((world_from_camera, clip_from_camera));
+        let view = View::new(&camera, size).map_err(lisle_reference::Error::from)?;
+        Ok::<_, Failure>(Detail { view, lod_pixels })
+    });
+    let options = Options { chord_error, object_id, detail: detail.transpose()?, ..Options::default() };
     let mut listener = Listener::new(progress);
     let made = detached(py, || make_fibers(yarns.strands(), &yarn, &options, &mut |done| listener.report(done)));
     let made = listener.outcome(made)?;

@@ -105,6 +105,11 @@ impl From<LightFields> for Light {
     }
 }
 
+/// A camera from its two matrices.
+pub fn camera((world_from_camera, clip_from_camera): (Rows, Rows)) -> Camera {
+    Camera { world_from_camera: matrix(world_from_camera), clip_from_camera: matrix(clip_from_camera) }
+}
+
 /// A scene, and how to draw it.
 pub fn scene(
     objects: Vec<ObjectFields<'_>>,
@@ -116,7 +121,7 @@ pub fn scene(
         objects: objects.into_iter().map(ObjectFields::object).collect::<Result<_, _>>()?,
         lights: lights.into_iter().map(Light::from).collect(),
         ambient: Vec3::from(ambient),
-        camera: Camera { world_from_camera: matrix(camera.0), clip_from_camera: matrix(camera.1) },
+        camera: self::camera(camera),
     })
 }
 

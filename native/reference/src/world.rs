@@ -60,6 +60,7 @@ impl World {
                 chord_error,
                 object_id: object.id,
                 space_from_object: space_from_world * object.world_from_object,
+                detail: None,
             };
             fibers::append(&mut all, object.yarns.strands(), &object.yarn, &options, &mut |_| progress())?;
         }

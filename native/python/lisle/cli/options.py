@@ -30,7 +30,6 @@ def add_input(parser: argparse.ArgumentParser, output: str) -> None:
 def add_picture(parser: argparse.ArgumentParser, samples: int) -> None:
     """What a picture shows, and how."""
     add = parser.add_argument
-    add("--size", type=size, default=(1280, 960), metavar="WxH", help="pixels (default 1280x960)")
     add("--samples", type=at_least_one, default=samples, metavar="N", help=f"samples per pixel (default {samples})")
     add(
         "--material",
@@ -40,6 +39,13 @@ def add_picture(parser: argparse.ArgumentParser, samples: int) -> None:
         help=names(Material.presets(), DEFAULT_MATERIAL),
     )
     add("--shading", choices=("physical", "simple"), default="physical", help="shading model (default physical)")
+    add_view(parser)
+
+
+def add_view(parser: argparse.ArgumentParser) -> None:
+    """From where, and how large."""
+    add = parser.add_argument
+    add("--size", type=size, default=(1280, 960), metavar="WxH", help="pixels (default 1280x960)")
     add(
         "--direction",
         type=direction,

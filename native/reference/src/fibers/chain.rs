@@ -1,7 +1,9 @@
 //! One fiber of one curve as chains of points, as close as its bends ask for.
 
 use glam::{DMat4, DVec3};
-use lisle_core::yarn::{Fiber, FiberTable, Segment, Twist, Yarn, breaks, fiber_point};
+use lisle_core::yarn::{Fiber, FiberTable, Segment, Twist, Yarn, YarnPoint, breaks, fiber_point};
+
+use super::detail::CurveDetail;
 
 /// Angle that a fiber turns through between two points that the test of [`Walk::refine`] sees, radians: within it, the cubic
 /// through both with their velocities is the curve to a few hundredths of a fiber's radius.
@@ -24,6 +26,7 @@ pub(super) struct Curve<'a> {
     pub scale: f64,
     /// How far a chord may depart from its curve, fiber radii.
     pub chord_error: f64,
+    pub detail: Option<CurveDetail>,
 }
 
 /// A point on a fiber; the velocity is per segment parameter.
@@ -33,7 +36,7 @@ struct Sample {
     position: DVec3,
     velocity: DVec3,
     radius: f64,
-    /// Radius without the taper: what errors are measured in.
+    /// Radius without taper and level of detail: what errors are measured in.
     full_radius: f64,
 }
 
@@ -45,20 +48,35 @@ pub(super) struct Chains {
 }
 
 impl Chains {
+    /// Adds a point. A stretch without width is none.
     fn push(&mut self, sample: &Sample) {
+        let open = self.points.len() - self.start();
+        if sample.radius == 0.0 && open > 0 && self.points[self.points.len() - 1][3] == 0.0 {
+            self.end();
+        }
         let [x, y, z] = sample.position.as_vec3().to_array();
         self.points.push([x, y, z, sample.radius as f32]);
     }
 
+    fn start(&self) -> usize {
+        self.ends.last().map_or(0, |end| *end as usize)
+    }
+
+    /// Ends the chain; a single point is none.
     fn end(&mut self) {
-        self.ends.push(self.points.len() as u32);
+        if self.points.len() - self.start() >= 2 {
+            self.ends.push(self.points.len() as u32);
+        } else {
+            self.points.truncate(self.start());
+        }
     }
 }
 
 struct Walk<'a> {
     curve: &'a Curve<'a>,
     fiber: Fiber,
-    segment: &'a Segment,
+    /// Of the segment.
+    number: usize,
     chains: &'a mut Chains,
 }
 
@@ -66,8 +84,8 @@ impl Curve<'_> {
     /// The chains of one fiber along the whole curve.
     pub fn chains(&self, fiber: Fiber) -> Chains {
         let mut chains = Chains::default();
-        for segment in &self.segments {
-            Walk { curve: self, fiber, segment, chains: &mut chains }.segment();
+        for number in 0..self.segments.len() {
+            Walk { curve: self, fiber, number, chains: &mut chains }.segment(number == 0);
         }
         chains.end();
         chains
@@ -75,25 +93,35 @@ impl Curve<'_> {
 }
 
 impl Walk<'_> {
+    fn segment_at(&self, t: f64) -> YarnPoint {
+        self.curve.segments[self.number].at(t)
+    }
+
     fn sample(&self, t: f64) -> Sample {
         let curve = self.curve;
-        let at = self.segment.at(t);
+        let at = self.segment_at(t);
+        let width = curve.detail.as_ref().map_or(1.0, |detail| detail.width(self.number, t, self.fiber.index));
         let point = fiber_point(curve.yarn, &curve.twist, curve.table, &at, self.fiber);
         let full_radius = at.radius * curve.scale * curve.yarn.fiber_radius / curve.yarn.outer_radius();
         Sample {
             t,
             position: curve.to_space.transform_point3(point.position),
             velocity: curve.to_space.transform_vector3(point.velocity),
-            radius: full_radius * point.taper,
+            radius: full_radius * point.taper * width,
             full_radius,
         }
     }
 
     /// Adds the points of the segment, its start only if it is the curve's.
-    fn segment(&mut self) {
-        let lengths = (self.segment.at(0.0).length, self.segment.at(1.0).length);
+    fn segment(&mut self, first: bool) {
+        if self.curve.detail.as_ref().is_some_and(|detail| detail.is_hidden(self.number, self.fiber.index)) {
+            let end = self.sample(1.0);
+            self.chains.push(&end);
+            return;
+        }
+        let lengths = (self.segment_at(0.0).length, self.segment_at(1.0).length);
         let mut start = self.sample(0.0);
-        if self.chains.points.is_empty() {
+        if first {
             self.chains.push(&start);
         }
         for b in breaks(self.curve.yarn, &self.curve.twist, self.curve.table, self.fiber, lengths) {
@@ -119,7 +147,7 @@ impl Walk<'_> {
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..50 {
             let middle = 0.5 * (low + high);
-            if self.segment.at(middle).length < length { low = middle } else { high = middle }
+            if self.segment_at(middle).length < length { low = middle } else { high = middle }
         }
         0.5 * (low + high)
     }
@@ -130,7 +158,7 @@ impl Walk<'_> {
             // A break on a knot: nothing lies in between.
             return;
         }
-        let lengths = self.segment.at(b.t).length - self.segment.at(a.t).length;
+        let lengths = self.segment_at(b.t).length - self.segment_at(a.t).length;
         let twist = &self.curve.twist;
         let turn = std::f64::consts::TAU * lengths * (twist.ply + twist.fiber + twist.migration);
         let steps = (turn / MOST_TURN_RAD).ceil().clamp(1.0, 1e6) as u32;
@@ -153,8 +181,9 @@ impl Walk<'_> {
         let off = |v: DVec3| v - along * v.dot(along);
         let (from_a, from_b) = (off(a.velocity * step), off(-b.velocity * step));
         let most = 0.75 * from_a.length().max(from_b.length());
-        let allowed = self.curve.chord_error * a.full_radius.min(b.full_radius);
-        let tapers = a.radius < a.full_radius || b.radius < b.full_radius;
+        let seen = self.curve.detail.as_ref().map_or(0.0, |detail| detail.chord_error(self.number));
+        let allowed = (self.curve.chord_error * a.full_radius.min(b.full_radius)).max(seen);
+        let tapers = a.radius != a.full_radius || b.radius != b.full_radius;
         if halvings == 0 || (most <= allowed && !tapers) {
             self.chains.push(b);
             return;

@@ -8,12 +8,13 @@ use thiserror::Error;
 
 use super::Fibers;
 use super::chain::{Chains, Curve};
+use super::detail::{CurveDetail, Detail};
 
 /// Chord errors that make sense: below, f32 rounds more away.
 const CHORD_ERRORS: RangeInclusive<f64> = 1e-3..=10.0;
 
 /// How fibers become chains of points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Options {
     /// How far a chord may depart from its curve, in radii of the fiber, 0.001 to 10.
     pub chord_error: f64,
@@ -21,11 +22,13 @@ pub struct Options {
     pub object_id: u32,
     /// To the space of the points. Radii grow by its mean scale, the cube root of its determinant.
     pub space_from_object: DMat4,
+    /// Fewer and wider fibers where a view does not tell them apart; `None` for all.
+    pub detail: Option<Detail>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { chord_error: 0.25, object_id: 1, space_from_object: DMat4::IDENTITY }
+        Self { chord_error: 0.25, object_id: 1, space_from_object: DMat4::IDENTITY, detail: None }
     }
 }
 
@@ -73,13 +76,18 @@ pub(crate) fn append(
     let table = FiberTable::new(yarn);
     for index in 0..strands.closed().len() {
         let closed = strands.closed()[index];
+        let segments = Segment::of_curve(strands, index);
+        let scale = options.space_from_object.determinant().abs().cbrt();
+        let to_space = |point| options.space_from_object.transform_point3(point);
+        let detail = |detail| CurveDetail::new(detail, yarn, &table, &segments, to_space, scale);
         let curve = Curve {
+            detail: options.detail.as_ref().map(detail),
             yarn,
             table: &table,
             twist: Twist::new(yarn, strands.total_lengths()[index], strands.reference_radii()[index], closed),
-            segments: Segment::of_curve(strands, index),
+            segments,
             to_space: options.space_from_object,
-            scale: options.space_from_object.determinant().abs().cbrt(),
+            scale,
             chord_error: options.chord_error,
         };
         let seed = fiber_seed(options.object_id, index as u32);

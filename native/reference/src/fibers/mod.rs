@@ -1,8 +1,10 @@
 //! Explicit fibers: the procedural yarn as curves of points and radii.
 
 mod chain;
+mod detail;
 mod generate;
 
+pub use detail::Detail;
 pub(crate) use generate::append;
 pub use generate::{FibersError, Options, fibers};
 
