@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::debian;
 use crate::failure::Failure;
 use crate::python::{Environment, Interpreter, interpreters};
 use crate::shell::{command, folder, once, output, run, say};
@@ -12,6 +13,10 @@ const RELEASES: [(&str, (u32, u32)); 3] = [("5.0", (3, 11)), ("4.5", (3, 11)), (
 
 /// The oldest that the extension runs in.
 const OLDEST: (u32, u32) = (4, 5);
+
+/// What the `bpy` wheel loads and does not bring, as Debian's packages.
+const LIBRARIES: [&str; 8] =
+    ["libgl1", "libx11-6", "libxi6", "libxrender1", "libxfixes3", "libxkbcommon0", "libsm6", "libice6"];
 
 /// Where the extension is enabled: its package below Blender's own.
 pub const MODULE: &str = "bl_ext.user_default.lisle_blender";
@@ -28,7 +33,22 @@ impl Modules {
     fn new(release: &'static str, interpreter: &Interpreter) -> Result<Self, Failure> {
         let bpy = format!("bpy=={release}.*");
         let environment = Environment::new(&format!("bpy-{release}"), interpreter, &[&bpy, "pytest>=8"])?;
-        Ok(Self { release, environment })
+        let modules = Self { release, environment };
+        if let Err(failure) = modules.load() {
+            if !failure.to_string().contains("cannot open shared object file") {
+                return Err(failure);
+            }
+            debian::install("Blender lacks libraries", &LIBRARIES, failure)?;
+            modules.load()?;
+        }
+        Ok(modules)
+    }
+
+    /// Whether `bpy` loads. A second time it is not tried.
+    fn load(&self) -> Result<(), Failure> {
+        once(&self.environment.stamp("bpy-loads"), self.release, || {
+            output("loading bpy", self.environment.python().args(["-c", "import bpy"])).map(|_| ())
+        })
     }
 
     /// One for every release whose Python is on this machine, and the releases that were left out with the reason.

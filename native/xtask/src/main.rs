@@ -4,6 +4,7 @@
 
 mod bench;
 mod blender;
+mod debian;
 mod demo;
 mod extension;
 mod failure;

@@ -72,6 +72,11 @@ impl Environment {
         Ok(environment)
     }
 
+    /// A file that remembers what was done in the environment; gone when that is made anew.
+    pub fn stamp(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("lisle-{name}"))
+    }
+
     fn pip(&self, what: &str, arguments: &[&str]) -> Result<(), Failure> {
         let quiet = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
         run(what, self.python().args(quiet).args(arguments))
