@@ -1,0 +1,127 @@
+"""Many random acts in a row: no crash, memory that stays, a right picture at the end.
+
+`LISLE_SOAK_S` is how long (20 s unless set).
+"""
+
+import os
+import time
+
+import numpy as np
+from looking import settled, world
+
+SECONDS = float(os.environ.get("LISLE_SOAK_S", "20"))
+
+ACTS = """
+import random
+chance = random.Random(SEED)
+scene = bpy.context.scene
+def edit():
+    bpy.ops.ed.undo_push()
+    yarn = bpy.data.objects.get('Yarn')
+    if yarn:
+        yarn.location = [chance.uniform(-1, 1) for _ in range(3)]
+def undo():
+    if bpy.ops.ed.undo.poll():
+        operator(bpy.ops.ed.undo)
+def add():
+    if len(scene.objects) < 8:
+        operator(bpy.ops.lisle.add_knit_swatch, courses=chance.randint(2, 9), wales=chance.randint(2, 9),
+                 yarn_radius=0.05)
+def remove():
+    swatches = [obj for obj in scene.objects if obj.name.startswith('Knit')]
+    if swatches:
+        bpy.data.objects.remove(chance.choice(swatches))
+def turn():
+    look([chance.uniform(-1, 1) for _ in range(3)], distance=chance.uniform(3, 15),
+         perspective=chance.choice(['PERSP', 'ORTHO']))
+def through_camera():
+    rv3d().view_perspective = 'CAMERA'
+def shade():
+    space().shading.type = chance.choice(['SOLID', 'WIREFRAME', 'RENDERED', 'RENDERED'])
+def engine():
+    scene.render.engine = chance.choice(['LISLE', 'LISLE', 'BLENDER_WORKBENCH', 'CYCLES'])
+def overlay():
+    scene.lisle.show_overlay = not scene.lisle.show_overlay
+def frame():
+    scene.frame_set(chance.randint(1, 5))
+def mode():
+    obj = bpy.context.view_layer.objects.active
+    if obj is not None and obj.name in scene.objects:
+        operator(bpy.ops.object.mode_set, mode=chance.choice(['OBJECT', 'EDIT']))
+def material():
+    for entry in bpy.data.materials:
+        entry.lisle.fiber.preset = chance.choice(['cotton-1', 'fleece', 'silk'])
+def samples():
+    scene.lisle.viewport_samples = chance.randint(1, 12)
+def quad():
+    operator(bpy.ops.screen.region_quadview)
+def render():
+    if bpy.context.mode == 'OBJECT':
+        scene.render.engine = 'LISLE'
+        bpy.ops.render.render()
+def resize():
+    window = bpy.context.window_manager.windows[0]
+    operator(bpy.ops.screen.screen_full_area)
+acts = [edit, edit, undo, add, remove, turn, turn, turn, through_camera, shade, engine, overlay, frame, mode, material,
+        samples, quad, render, resize]
+"""
+
+STEP = """
+act = chance.choice(acts)
+try:
+    act()
+except RuntimeError as error:
+    print('soak:', act.__name__, str(error).strip())
+answer = act.__name__
+"""
+
+# Python's and numpy's, exactly; and the process's, which the software drivers of Vulkan and OpenGL have their part in.
+TRACE = "import tracemalloc, resource; tracemalloc.start()"
+MEMORY = """
+with open('/proc/self/statm') as file:
+    resident = int(file.read().split()[1]) * resource.getpagesize() / 2**20
+answer = [tracemalloc.get_traced_memory()[0] / 2**20, resident]
+"""
+
+
+def test_random_acts(view):
+    world(view, (0.2, 0.4, 0.6))
+    view.do(f"SEED = 1\n{ACTS}\n{TRACE}")
+    done, memory = [], []
+    end = time.monotonic() + SECONDS
+    while time.monotonic() < end:
+        done.append(view.do(STEP))
+        time.sleep(0.02 if len(done) % 7 else 0.3)
+        if len(done) % 10 == 0:
+            memory.append(view.do(MEMORY))
+    view.do("tracemalloc.stop()")
+    print(len(done), "acts; MiB:", [[round(value) for value in pair] for pair in memory])
+    assert len(done) > SECONDS
+    third = len(memory) // 3
+    if third > 5:
+        traced = [pair[0] for pair in memory]
+        assert np.median(traced[-third:]) < 1.1 * np.median(traced[third : 2 * third])
+    log = view.log.read_text()
+    assert "Traceback" not in log and "panicked" not in log, log
+
+
+def test_two_hundred_sizes_keep_memory_flat(view):
+    """The border changes the size of everything that is kept for a view."""
+    view.do(TRACE)
+    memory = []
+    for number in range(200):
+        view.do(
+            "view = space(); view.use_render_border = True\n"
+            f"view.render_border_max_x = {0.3 + 0.7 * ((number * 37) % 100) / 100}\n"
+            f"view.render_border_max_y = {0.3 + 0.7 * ((number * 61) % 100) / 100}\n"
+            "areas()[0].tag_redraw()"
+        )
+        time.sleep(0.03)
+        if number % 10 == 0:
+            settled(view)
+            memory.append(view.do(MEMORY))
+    view.do("tracemalloc.stop()")
+    print("MiB:", [[round(value, 1) for value in pair] for pair in memory])
+    # The same sizes come again after a hundred.
+    traced = np.array(memory)[:, 0]
+    assert np.abs(traced[11:] - traced[1:10]).max() < 2
