@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lisle: yarn curves drawn as cloth made of plies and fibers.
 
-Imports point one way: overlay → engine → export → core, tools → export, and ui on top. `core` holds what can be tested
+Imports point one way: overlay and tools → engine → export → core, and ui on top. `core` holds what can be tested
 without Blender.
 """
 

@@ -106,13 +106,14 @@ class Painter:
     def picture(self, name, wait_s=0.0):
         """The best Picture of what the view shows now, or None; raises what drawing it raised.
 
-        Waits up to `wait_s` for one.
+        Waits up to `wait_s` for one, unless it pauses.
         """
         with self._condition:
             view = self._views.get(name)
             if view is None:
                 return None
-            self._condition.wait_for(view.has_something, wait_s)
+            if not self._paused:
+                self._condition.wait_for(view.has_something, wait_s)
             view.seen = view.error or view.picture
             if view.error is not None:
                 raise view.error

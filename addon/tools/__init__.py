@@ -1,15 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Operators that make and change yarn. Imports `export` and `core`."""
+"""Operators that make and change yarn. Imports `engine`, `export` and `core`."""
 
 import bpy
 
 from .add_knit import LISLE_OT_add_knit_swatch, LISLE_OT_add_knit_tube
+from .fibers_to_curves import LISLE_OT_fibers_to_curves
 from .import_bcc import LISLE_FH_bcc, LISLE_OT_import_bcc
 from .store_length import LISLE_OT_store_length
 
 _CLASSES = (
-    LISLE_OT_add_knit_swatch, LISLE_OT_add_knit_tube, LISLE_OT_import_bcc, LISLE_FH_bcc, LISLE_OT_store_length,
-)  # fmt: skip
+    LISLE_OT_add_knit_swatch,
+    LISLE_OT_add_knit_tube,
+    LISLE_OT_import_bcc,
+    LISLE_FH_bcc,
+    LISLE_OT_store_length,
+    LISLE_OT_fibers_to_curves,
+)
 
 
 def register():

@@ -15,8 +15,7 @@ def yarn_data(name, yarns, scale=1.0):
     """
     if not np.isin(yarns.basis, (_CATMULL_ROM, _POLY, _B_SPLINE)).all():
         raise ValueError(f"{name} has curves that are neither Catmull-Rom nor linear nor B-splines")
-    data = bpy.data.hair_curves.new(name)
-    data.add_curves(np.diff(yarns.offsets.astype(np.int64)).tolist())
+    data = curves_data(name, yarns.points * np.float32(scale), yarns.offsets, yarns.radii * np.float32(scale))
     for basis, kind in ((_POLY, "POLY"), (_B_SPLINE, "NURBS")):
         which = np.flatnonzero(yarns.basis == basis)
         if len(which):
@@ -24,10 +23,19 @@ def yarn_data(name, yarns, scale=1.0):
     if (yarns.basis == _B_SPLINE).any():  # cubic, with evenly spaced knots
         order = _attribute(data, "nurbs_order", "INT8", "CURVE")
         order.data.foreach_set("value", np.full(len(yarns.basis), 4, np.int32))
-    data.position_data.foreach_set("vector", (yarns.points * np.float32(scale)).ravel())
-    _attribute(data, "radius", "FLOAT", "POINT").data.foreach_set("value", yarns.radii * np.float32(scale))
     if yarns.closed.any():
         _attribute(data, "cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", yarns.closed)
+    return data
+
+
+def curves_data(name, points, offsets, radii, kind="CATMULL_ROM"):
+    """A new `bpy.types.Curves`: points (n, 3) and radii (n,) float32, offsets (c + 1,); all curves of one kind."""
+    data = bpy.data.hair_curves.new(name)
+    data.add_curves(np.diff(offsets.astype(np.int64)).tolist())
+    if kind != "CATMULL_ROM":
+        data.set_types(type=kind)
+    data.position_data.foreach_set("vector", points.ravel())
+    _attribute(data, "radius", "FLOAT", "POINT").data.foreach_set("value", radii)
     data.update_tag()
     return data
 

@@ -17,6 +17,7 @@ def _import(self, _context):
 def _object(self, _context):
     self.layout.separator()
     self.layout.operator("lisle.store_length_coordinate")
+    self.layout.operator("lisle.fibers_to_curves")
 
 
 _ENTRIES = (("VIEW3D_MT_curve_add", _add), ("TOPBAR_MT_file_import", _import), ("VIEW3D_MT_object", _object))

@@ -151,6 +151,10 @@ def test_it_pauses_and_stops_within_a_call(painter):
     calls = len(scene.calls)
     time.sleep(0.2)
     assert len(scene.calls) == calls
+    painter.show("b", scene.task("b"))
+    start = time.monotonic()
+    assert painter.picture("b", 10) is None and time.monotonic() - start < 1
+    painter.close("b")
     painter.pause(False)
     time.sleep(0.3)
     assert len(scene.calls) > calls

@@ -112,8 +112,9 @@ def test_b_splines_become_blenders_own(lisle, tmp_path):
     sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
     sun.data.energy = 3
     alpha = scenes.render_rgba(tmp_path / "a.exr")[..., 3]
-    # The curve begins at (p0 + 4 p1 + p2) / 6, in the test camera of 8 by 6 metres and 64 by 48 pixels.
-    assert alpha[(24 - 8), int(32 - 8 * 7 / 6)] > 0.9 and alpha[24, int(32 - 8 * 2.5)] == 0
+    # Half-way from the second to the third point it is at (p0 + 23 p1 + 23 p2 + p3) / 48, and never at the second,
+    # in the test camera of 8 by 6 metres and 64 by 48 pixels.
+    assert alpha[23, 27] > 0.9 and alpha[24 - 16, 32 - 8] == 0
 
 
 def test_several_files_at_once_and_a_broken_one(lisle, tmp_path):
@@ -176,3 +177,59 @@ def test_nothing_selected_is_said(lisle):
 
     with pytest.raises(RuntimeError, match="poll"):
         bpy.ops.lisle.store_length_coordinate()
+
+
+def select(obj):
+    import bpy
+
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    return obj
+
+
+def test_fibers_become_curves_where_they_are_drawn(lisle, tmp_path):
+    """What another engine makes of them covers the same pixels."""
+    import bpy
+
+    obj = select(scenes.curves("Yarn", scenes.line(30), radius=0.5))
+    obj.location, obj.rotation_euler = (0.5, -0.5, 0), (0, 0, 0.4)
+    sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
+    sun.data.energy = 3
+    scene = bpy.context.scene
+    scene.lisle.samples, scene.lisle.lod = 64, 0
+    ours = scenes.render_rgba(tmp_path / "a.exr")[..., 3]
+    assert bpy.ops.lisle.fibers_to_curves(for_camera=False) == {"FINISHED"}
+    fibers = bpy.data.objects["Yarn Fibers"]
+    expected = lisle.Yarn.preset("cotton-1")
+    assert len(fibers.data.curves) >= expected.plies * expected.fibers_per_ply
+    assert bpy.context.selected_objects == [fibers]
+    obj.hide_render = True
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.max_bounces = 32, False, 0
+    theirs = scenes.render_rgba(tmp_path / "b.exr")[..., 3]
+    assert np.abs(ours - theirs).mean() < 0.01 and (ours > 0.5).mean() > 0.05
+    assert np.abs(ours - theirs[:, ::-1]).mean() > 0.03
+
+
+def test_a_camera_asks_for_fewer_fibers(lisle):
+    import bpy
+
+    obj = select(scenes.curves("Yarn", scenes.line(30), radius=0.05))
+    bpy.ops.lisle.fibers_to_curves(for_camera=True)
+    few = len(bpy.data.objects["Yarn Fibers"].data.points)
+    bpy.data.objects["Yarn Fibers"].select_set(False)
+    select(obj)
+    bpy.ops.lisle.fibers_to_curves(for_camera=False)
+    assert few < 0.2 * len(bpy.context.selected_objects[0].data.points)
+
+
+def test_fibers_of_nothing_and_too_many_are_refused(lisle):
+    import bpy
+
+    select(scenes.empty_mesh("Mesh"))
+    with pytest.raises(RuntimeError, match="None of the selected objects has curves"):
+        bpy.ops.lisle.fibers_to_curves()
+    select(scenes.curves("Yarn", *[scenes.line(400, (-3, y, 0), (3, y, 0)) for y in range(20)], radius=0.01))
+    with pytest.raises(RuntimeError, match="More than 1 million points"):
+        bpy.ops.lisle.fibers_to_curves(for_camera=False, most_points=1)
+    assert "Fibers" not in bpy.data.collections
