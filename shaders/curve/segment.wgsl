@@ -41,6 +41,7 @@ struct Knot {
 struct YarnPoint {
     position: vec3f,
     velocity: vec3f,
+    acceleration: vec3f,
     tangent: vec3f,
     normal: vec3f,
     binormal: vec3f,
@@ -162,6 +163,7 @@ fn yarn_point(s: Segment, t: f32) -> YarnPoint {
     p.binormal_rate = -p.normal * twist - p.tangent * dot(p.binormal, tangent_rate);
     p.position = cubic_value(s.position, t);
     p.velocity = cubic_slope(s.position, t);
+    p.acceleration = 2.0 * s.position.c + 6.0 * t * s.position.d;
     p.length = scalar_value(s.length, t);
     p.length_rate = scalar_slope(s.length, t);
     p.radius = scalar_value(s.radius, t);

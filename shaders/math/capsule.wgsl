@@ -45,6 +45,13 @@ fn line_depth(line: Line, t: f32, orthographic: bool) -> f32 {
     return 1.0 / mix(1.0 / line.a.depth, 1.0 / line.b.depth, t);
 }
 
+// What the depth of a curve adds to that of its chord at `share` of the way: the cubic with the curve's rates of depth at the
+// ends (per whole chord). A chord that is exact on the screen may still pass through the middle of a yarn a pixel wide.
+fn depth_beyond_chord(rate_a: f32, rate_b: f32, chord: f32, share: f32) -> f32 {
+    let rest = 1.0 - share;
+    return share * rest * ((rate_a - chord) * rest - (rate_b - chord) * share);
+}
+
 // Pixels to visit: columns along x if the line is flat, else rows along y, as a range and one about its centre in each.
 struct LineWalk {
     flat: bool,

@@ -3,6 +3,8 @@
 struct CoreEnd {
     position: vec2f,
     depth: f32,
+    // Of the depth along the segment.
+    depth_rate: f32,
     // Half width, pixels; along +v on the screen: its direction.
     half_width: f32,
     side: vec2f,
@@ -21,12 +23,13 @@ fn core_end(c: CorePoint) -> CoreEnd {
     return CoreEnd(
         pixel.xy,
         pixel.w,
+        (frame.pixel_from_render * vec4f(c.velocity, 0.0)).w,
         radius_in_pixels(c.half_width, pixel.z),
         side / max(length(side), 1e-20),
         c.turns,
         c.depth_share,
-        dot(c.toward, view),
-        dot(c.across, view),
+        core_nearness(c, c.toward, view),
+        core_nearness(c, c.across, view),
     );
 }
 

@@ -8,34 +8,24 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, step: u32, pixel: vec2u) -> Su
     let steps = core_steps(yarn, s, scale.radius_pixels);
     let t0 = f32(step - 1u) / f32(steps);
     let t1 = f32(step) / f32(steps);
-    let pa = yarn_point(s, t0);
-    let pb = yarn_point(s, t1);
-    let ca = core_point(yarn, s, pa, ply, frame.viewer);
-    let cb = core_point(yarn, s, pb, ply, frame.viewer);
-    let hit = core_hit(core_end(ca), core_end(cb), vec2f(pixel) + 0.5);
-    // Steps are short: in between, everything is as good as linear.
-    let fibers = mix_detail(scale.ends, mix(t0, t1, hit.t)).fibers;
-    let texel = core_texel(yarn, core_texture(yarn, hit.depth_share, fibers, core_chance(pixel)), hit.turns, hit.v);
+    let a = core_end(core_point(yarn, s, yarn_point(s, t0), ply, frame.viewer));
+    let b = core_end(core_point(yarn, s, yarn_point(s, t1), ply, frame.viewer));
+    let hit = core_hit(a, b, vec2f(pixel) + 0.5);
+    let t = mix(t0, t1, hit.t);
+    let texel = core_texel(yarn, core_texture(yarn, hit.depth_share, mix_detail(scale.ends, t).fibers, core_chance(pixel)), hit.turns, hit.v);
     let surface = core_surface_at(texel);
     let slopes = core_slopes_at(yarn, texel);
-    let toward = mix(ca.toward, cb.toward, hit.t);
-    let across = mix(ca.across, cb.across, hit.t);
-    let radial = normalize(mix(ca.ply.radial, cb.ply.radial, hit.t));
-    let tangential = normalize(mix(ca.ply.tangential, cb.ply.tangential, hit.t));
-    let offset = toward * surface.height + across * hit.v;
-    let winding = (toward * slopes.x + across * slopes.y) * mix(ca.fiber_rate, cb.fiber_rate, hit.t);
-    let turning = mix(ca.ply.radial_rate, cb.ply.radial_rate, hit.t) * dot(offset, radial)
-        + mix(ca.ply.tangential_rate, cb.ply.tangential_rate, hit.t) * dot(offset, tangential);
-    let tangent = normalize(mix(ca.velocity, cb.velocity, hit.t) + turning + winding);
-    let center = mix(ca.center, cb.center, hit.t);
-    let view = direction_to_viewer(frame.viewer, center);
-    let normal = fiber_normal(tangent, mix(ca.side, cb.side, hit.t), view, surface.offset);
-    let tube = Tube(
-        mix(pa.position, pb.position, hit.t),
-        mix(pa.radius, pb.radius, hit.t),
-        normalize(mix(pa.tangent, pb.tangent, hit.t)),
-    );
-    return Surface(tube, radial, tangential, center + offset, tangent, normal);
+    // The step may be a long chord: what is shaded lies where the curve is.
+    let p = yarn_point(s, t);
+    let c = core_point(yarn, s, p, ply, frame.viewer);
+    let offset = c.toward * surface.height + c.across * hit.v;
+    let winding = (c.toward * slopes.x + c.across * slopes.y) * c.fiber_rate;
+    let turning = c.ply.radial_rate * dot(offset, c.ply.radial) + c.ply.tangential_rate * dot(offset, c.ply.tangential);
+    let tangent = normalize(c.velocity + turning + winding);
+    let view = direction_to_viewer(frame.viewer, c.center);
+    let normal = fiber_normal(tangent, c.side, view, surface.offset);
+    let position = c.center + c.side * dot(offset, c.side) + view * core_nearness(c, offset, view);
+    return Surface(Tube(p.position, p.radius, p.tangent), c.ply.radial, c.ply.tangential, position, tangent, normal);
 }
 
 @compute @workgroup_size(64)

@@ -3,13 +3,27 @@
 
 @group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
 
+// The drawn chord lies beside the curve, by a thin fiber's width or more: the pixel's offset is measured from the chord. What second
+// derivatives leave of the difference is folded back into the fiber.
+fn folded(offset: f32) -> f32 {
+    return abs(fract(0.25 * offset + 0.75) * 4.0 - 2.0) - 1.0;
+}
+
+// From a fiber's point to its chord at the same parameter.
+fn to_chord(f: FiberPoint, t: f32, steps: u32) -> vec3f {
+    let in_step = fract(t * f32(steps));
+    return f.acceleration * (0.5 * in_step * (1.0 - in_step) / f32(steps * steps));
+}
+
 fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel: vec2f) -> Surface {
     let t = f32(place) / place_scale();
     let p = yarn_point(s, t);
     let q = ply_point(yarn, s, p, ply);
     let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), index));
-    let width = width_factor(yarn, mix_detail(scale_of(yarn, s).ends, t), index, f);
-    let at = to_pixel(frame.pixel_from_render, f.position);
+    let scale = scale_of(yarn, s);
+    let width = width_factor(yarn, mix_detail(scale.ends, t), index, f);
+    let steps = fiber_steps(yarn, s, index / CHUNK * CHUNK, scale.radius_pixels);
+    let at = to_pixel(frame.pixel_from_render, f.position + to_chord(f, t, steps));
     // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.
     let moved = (frame.pixel_from_render * vec4f(f.velocity, 0.0)).xyz;
     let on_screen = (moved.xy - at.xy * moved.z) / at.z;
@@ -17,7 +31,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let to_pixel_center = pixel - at.xy;
     let rest = clamp(dot(to_pixel_center, on_screen) / (speed * speed), -1.0 / place_scale(), 1.0 / place_scale());
     let across = (to_pixel_center.x * on_screen.y - to_pixel_center.y * on_screen.x) / speed;
-    let offset = across / max(radius_in_pixels(yarn.fiber_radius * p.radius * width, at.z), 1e-20);
+    let offset = folded(across / max(radius_in_pixels(yarn.fiber_radius * p.radius * width, at.z), 1e-20));
     let center = f.position + f.velocity * rest;
     let tangent = normalize(f.velocity);
     let view = direction_to_viewer(frame.viewer, center);
@@ -27,8 +41,8 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let grows = dot(side_on_screen.xy - at.xy * side_on_screen.z, vec2f(on_screen.y, -on_screen.x)) >= 0.0;
     let normal = fiber_normal(tangent, side * select(-1.0, 1.0, grows), view, offset);
     // Where the view ray meets the fiber's surface.
-    let radius = yarn.fiber_radius * p.radius * width;
-    let x = clamp(offset, -1.0, 1.0);
+    let radius = yarn.fiber_radius * p.radius * min(width, 1.0);
+    let x = offset;
     let sine = length(side);
     let outward = side * (select(-1.0, 1.0, grows) * x / max(sine, 1e-6));
     let position = center + radius * (outward + view * (sqrt(1.0 - x * x) * min(1.0 / max(sine, 1e-6), MOST_LEAN)));

@@ -22,7 +22,8 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
                 continue;
             }
             let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
-            let depth = line_depth(line, hit.t, orthographic) - nearer;
+            let behind = depth_beyond_chord(a.depth_rate * (t1 - t0), b.depth_rate * (t1 - t0), b.depth - a.depth, hit.t);
+            let depth = line_depth(line, hit.t, orthographic) + behind - nearer;
             store_key(tile_index(pixel), make_key(depth, segment, slot, step));
         }
     }

@@ -11,7 +11,8 @@ fn line_lean(line: Line, orthographic: bool) -> f32 {
     return min(sqrt(1.0 + along * along / max(across * across, 1e-30)), MOST_LEAN);
 }
 
-fn draw_line(line: Line, parts: Parts, segment: u32, slot: u32, t0: f32, t1: f32) {
+// `rates`: of the depth at both ends, per whole line. `thickness`: depth of the fiber relative to its width on the screen.
+fn draw_line(line: Line, rates: vec2f, thickness: f32, parts: Parts, segment: u32, slot: u32, t0: f32, t1: f32) {
     let orthographic = frame.viewer.w > 0.5;
     let lean = line_lean(line, orthographic);
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
@@ -25,10 +26,11 @@ fn draw_line(line: Line, parts: Parts, segment: u32, slot: u32, t0: f32, t1: f32
                 // Equal steps on the screen are not equal steps in depth.
                 let share = select(hit.t * depth / line.b.depth, hit.t, orthographic);
                 let place = u32(mix(t0, t1, share) * place_scale() + 0.5);
+                let behind = depth_beyond_chord(rates.x, rates.y, line.b.depth - line.a.depth, share);
                 // The fiber is round: its surface is nearer than its centre line.
                 let w = select(depth, 1.0, orthographic);
-                let bulge = hit.bulge * lean * hit.radius * w / frame.pixels_per_unit;
-                store_key(tile_index(pixel), make_key(depth - bulge, segment, slot, place));
+                let bulge = hit.bulge * thickness * lean * hit.radius * w / frame.pixels_per_unit;
+                store_key(tile_index(pixel), make_key(depth + behind - bulge, segment, slot, place));
             }
         }
     }
@@ -102,7 +104,7 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
             previous[index - first] = b;
             if step > 0u && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
                 && joined(a.piece, a.period, b.piece, b.period) {
-                draw_line(make_line(a.line, b.line), parts, segment, first_slot + index, before, t);
+                draw_line(make_line(a.line, b.line), vec2f(a.depth_rate, b.depth_rate) / f32(steps), 1.0 / max(a.width, 1.0), parts, segment, first_slot + index, before, t);
             }
         }
     }

@@ -14,12 +14,23 @@ struct CorePoint {
     // Unit direction of +v on the screen, render space.
     side: vec3f,
     half_width: f32,
+    // Squared cosine between the view and the section plane.
+    facing_squared: f32,
     // u, continuous along a segment but for jumps by whole turns.
     turns: f32,
     // How deep the ply is in this view, from 0 (its short half axis) to 1 (its long one).
     depth_share: f32,
     ply: PlyPoint,
     fiber_rate: f32,
+}
+
+// Seen from farther along the yarn than this, a point's place along it is no longer found.
+const LEAST_FACING_SQUARED: f32 = 0.05;
+
+// How much nearer to the viewer than the centre line a view ray meets the surface whose section holds `offset`: seen at a slant, that
+// section is not the one that the ray meets the centre line in.
+fn core_nearness(c: CorePoint, offset: vec3f, view: vec3f) -> f32 {
+    return dot(offset, view) / c.facing_squared;
 }
 
 fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> CorePoint {
@@ -38,6 +49,7 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     c.across = c.ply.radial * sideways.x + c.ply.tangential * sideways.y;
     c.side = (c.ply.tangential * in_section.x - c.ply.radial * in_section.y) / section_length;
     c.half_width = dot(c.across, c.side);
+    c.facing_squared = max(section_length * section_length, LEAST_FACING_SQUARED);
     let start = ply_seed(s.seed, ply).angle_turns;
     let psi = atan2(seen_from.y, seen_from.x) / TAU;
     var ply_turns = 0.0;
@@ -68,10 +80,15 @@ struct CoreChance {
 // The layers on either side of a level of detail hold a few fibers too many and too few: on the average those that are not drawn.
 fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -> CoreTexture {
     let last_view = f32(yarn.core_views - 1u);
-    let last_layer = f32(yarn.core_layers - 1u);
+    // Layer l holds the fibers from the share (l / layers)^2 on.
+    let layers = f32(yarn.core_layers);
+    let layer = min(floor(sqrt(fibers) * layers), layers - 1.0);
+    let begin = layer * layer;
+    let end = (layer + 1.0) * (layer + 1.0);
+    let share = (fibers * layers * layers - begin) / (end - begin);
     return CoreTexture(
         u32(clamp(floor(depth_share * last_view + chance.view), 0.0, last_view)),
-        u32(clamp(floor(fibers * f32(yarn.core_layers) + chance.layer), 0.0, last_layer)),
+        u32(min(floor(layer + share + chance.layer), layers - 1.0)),
     );
 }
 

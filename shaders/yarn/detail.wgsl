@@ -8,6 +8,9 @@ struct Detail {
     flyaways: f32,
 }
 
+// Flyaways of a ply that remain from however far: fewer would be wider than the ply.
+const LEAST_FLYAWAYS: f32 = 3.0;
+
 fn detail_at(yarn: Yarn, radius_pixels: f32, lod_pixels: f32) -> Detail {
     let fiber = 2.0 * yarn.fiber_radius * radius_pixels;
     let ply = (yarn.ellipse_short + yarn.ellipse_long) * radius_pixels;
@@ -17,7 +20,8 @@ fn detail_at(yarn: Yarn, radius_pixels: f32, lod_pixels: f32) -> Detail {
     } else if fiber < lod_pixels {
         lambda = fiber / lod_pixels * (ply - lod_pixels) / (ply - fiber);
     }
-    let flyaways = clamp(fiber / max(lod_pixels, 1e-20), 1.0 / f32(max(yarn.flyaway_fibers, 1u)), 1.0);
+    let fewest = min(LEAST_FLYAWAYS / f32(max(yarn.flyaway_fibers, 1u)), 1.0);
+    let flyaways = clamp(fiber / max(lod_pixels, 1e-20), fewest, 1.0);
     return Detail(lambda * lambda, flyaways);
 }
 
@@ -26,11 +30,11 @@ fn fiber_count(yarn: Yarn, detail: Detail) -> u32 {
     return u32(ceil(max(detail.fibers * f32(yarn.fibers), detail.flyaways * f32(yarn.flyaway_fibers))));
 }
 
-// Factor on a fiber's width. Flyaways keep their area while they are outside of the ply.
+// Factor on a fiber's width. Flyaways keep their area: the core leaves out as many fibers as are astray.
 fn width_factor(yarn: Yarn, detail: Detail, index: u32, f: FiberPoint) -> f32 {
     let inside = clamp(detail.fibers * f32(yarn.fibers) - f32(index), 0.0, 1.0);
     let outside = clamp(detail.flyaways * f32(yarn.flyaway_fibers) - f32(index), 0.0, 1.0) / detail.flyaways;
-    return f.taper * mix(inside, outside, f.flyaway * smoothstep(0.95, 1.1, f.relative_radius));
+    return f.taper * mix(inside, outside, f.flyaway);
 }
 
 // Chord error bound, pixels.
@@ -58,8 +62,18 @@ fn winding_pixels(yarn: Yarn, s: Segment, amplitude: f32, radius_pixels: f32) ->
         + yarn.ellipse_long * (around_ply * around_ply + amplitude * radians.z * radians.z));
 }
 
-fn steps_for(second_derivative_pixels: f32) -> u32 {
-    return clamp(u32(ceil(sqrt(second_derivative_pixels / (8.0 * CHORD_ERROR)))), 1u, MOST_STEPS);
+// However small the yarn on the screen, a step turns by no more than this (radians): its depth is a cubic.
+const MOST_TURNING: f32 = 1.0;
+
+// Turning of a fiber about the yarn's axis along the segment, as seen from there: about its ply and with it.
+fn turning(yarn: Yarn, s: Segment) -> f32 {
+    let radians = TAU * dot(s.length, vec4f(0.0, 1.0, 1.0, 1.0)) * abs(s.turns);
+    return max(radians.y, select(0.0, radians.x, yarn.plies > 1u));
+}
+
+fn steps_for(yarn: Yarn, s: Segment, second_derivative_pixels: f32) -> u32 {
+    let steps = max(sqrt(second_derivative_pixels / (8.0 * CHORD_ERROR)), turning(yarn, s) / MOST_TURNING);
+    return clamp(u32(ceil(steps)), 1u, MOST_STEPS);
 }
 
 // Steps of a chunk of fibers that begins at rank `first`. Among flyaways a hair bends most; the bound is that of a typical
@@ -72,9 +86,9 @@ fn fiber_steps(yarn: Yarn, s: Segment, first: u32, radius_pixels: f32) -> u32 {
         let width = clamp(max(abs(yarn.width_mean), 0.8 * yarn.width_deviation), 0.04, 0.45);
         amplitude = max(amplitude, max(loops, 2.0 * rise / (TAU * TAU * width * width)));
     }
-    return steps_for(bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, amplitude, radius_pixels));
+    return steps_for(yarn, s, bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, amplitude, radius_pixels));
 }
 
 fn core_steps(yarn: Yarn, s: Segment, radius_pixels: f32) -> u32 {
-    return steps_for(bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, 0.0, radius_pixels));
+    return steps_for(yarn, s, bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, 0.0, radius_pixels));
 }

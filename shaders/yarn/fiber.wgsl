@@ -3,8 +3,10 @@
 struct PlyPoint {
     position: vec3f,
     velocity: vec3f,
+    acceleration: vec3f,
     radial: vec3f,
     tangential: vec3f,
+    angle_rate: f32,
     radial_rate: vec3f,
     tangential_rate: vec3f,
 }
@@ -22,6 +24,9 @@ fn ply_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32) -> PlyPoint {
     q.radial_rate = q.tangential * angle_rate + p.normal_rate * unit.x + p.binormal_rate * unit.y;
     q.tangential_rate = -q.radial * angle_rate - p.normal_rate * unit.y + p.binormal_rate * unit.x;
     q.position = p.position + q.radial * (yarn.ply_distance * p.radius);
+    // Of the winding alone; the frame itself turns slowly beside it.
+    q.acceleration = p.acceleration - q.radial * (yarn.ply_distance * p.radius * angle_rate * angle_rate);
+    q.angle_rate = angle_rate;
     q.velocity = p.velocity + yarn.ply_distance * (q.radial * p.radius_rate + q.radial_rate * p.radius);
     return q;
 }
@@ -63,6 +68,7 @@ const PIECE_BEYOND: u32 = 2u;
 struct Profile {
     radius: f32,
     radius_rate: f32,
+    radius_acceleration: f32,
     angle_turns: f32,
     angle_rate: f32,
     // 1 for a loop or a hair.
@@ -78,7 +84,7 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
     let wave_rate = PI * unit.y;
     let inner = fiber.radius * yarn.r_min;
     var outer = fiber.radius;
-    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
+    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
     if fiber.index < yarn.flyaway_fibers {
         let choice = unit_from_hash(hash);
         if choice < yarn.loop_chance {
@@ -99,6 +105,7 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
                 return Profile(
                     fiber.radius + rise * along * along,
                     2.0 * along * rise * direction / width,
+                    2.0 * rise / (width * width),
                     astray * along * along,
                     2.0 * along * astray * direction / width,
                     1.0,
@@ -114,14 +121,15 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
     }
     profile.radius = inner + (outer - inner) * wave;
     profile.radius_rate = (outer - inner) * wave_rate;
+    profile.radius_acceleration = (outer - inner) * (0.5 * TAU * TAU) * unit.x;
     return profile;
 }
 
 struct FiberPoint {
     position: vec3f,
     velocity: vec3f,
-    // Relative to the ply's half axes.
-    relative_radius: f32,
+    // How the curve bends, near enough to tell it from its chords.
+    acceleration: vec3f,
     flyaway: f32,
     taper: f32,
     piece: u32,
@@ -150,7 +158,16 @@ fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, q: PlyPoint, fiber: Fiber) 
     f.position = q.position + spoke * (shape.radius * p.radius);
     f.velocity = q.velocity + spoke_rate * (shape.radius * p.radius)
         + spoke * (shape.radius * p.radius_rate + shape.radius_rate * phase_rate * p.radius);
-    f.relative_radius = shape.radius;
+    // An ellipse is the sum of two circles that turn with and against the ply.
+    let with_ply = q.angle_rate + angle_rate;
+    let against = q.angle_rate - angle_rate;
+    let half_sum = 0.5 * (yarn.ellipse_short + yarn.ellipse_long);
+    let half_difference = 0.5 * (yarn.ellipse_short - yarn.ellipse_long);
+    let spoke_acceleration = -(q.radial * unit.x + q.tangential * unit.y) * (half_sum * with_ply * with_ply)
+        - (q.radial * unit.x - q.tangential * unit.y) * (half_difference * against * against);
+    f.acceleration = q.acceleration + p.radius * (spoke_acceleration * shape.radius
+        + 2.0 * spoke_rate * (shape.radius_rate * phase_rate)
+        + spoke * (shape.radius_acceleration * phase_rate * phase_rate));
     f.flyaway = shape.flyaway;
     f.taper = shape.taper;
     f.piece = shape.piece;

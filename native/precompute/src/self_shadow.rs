@@ -173,6 +173,71 @@ mod tests {
         assert!(!within_bounds(errors(&yarn, |psi, q| (-bare.at(psi, q)).exp())), "without flyaways");
     }
 
+    /// Light that reaches points which a viewer sees, for several angles between light and viewer: (angle, true mean, predicted mean).
+    fn seen(yarn: &Yarn, predict: impl Fn(&Seen) -> f64) -> Vec<(f64, f64, f64)> {
+        const ANGLES_DEG: [f64; 8] = [0.0, 5.0, 15.0, 30.0, 60.0, 90.0, 130.0, 180.0];
+        let (dealer, mut random) = (Sections::new(yarn), Random::new(6));
+        let radius = yarn.fiber_radius / yarn.outer_radius();
+        let mut sums = vec![(0.0, 0.0, 0.0); ANGLES_DEG.len()];
+        for _ in 0..1500 {
+            let fibers = dealer.draw(&mut random);
+            for _ in 0..20 {
+                let psi = TAU * random.unit();
+                let view = DVec2::from_angle(psi);
+                let across = 2.0 * random.unit() - 1.0;
+                let ray = view.perp() * across;
+                // The fiber nearest to the viewer, as a circle.
+                let met = fibers.iter().enumerate().filter_map(|(k, fiber)| {
+                    let offset = (fiber.center - ray).dot(view.perp());
+                    let half = radius * radius - offset * offset;
+                    (half > 0.0).then(|| (k, (fiber.center - ray).dot(view) + half.sqrt()))
+                });
+                let Some((own, depth)) = met.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+                let q = ray + view * depth;
+                for (k, angle) in ANGLES_DEG.iter().enumerate() {
+                    let to_light = psi + angle.to_radians();
+                    let light = DVec2::from_angle(to_light);
+                    let open = !fibers.iter().enumerate().any(|(k, fiber)| {
+                        let w = fiber.center - q;
+                        k != own && w.dot(light) > 0.0 && w.perp_dot(light).abs() < radius
+                    });
+                    let sum = &mut sums[k];
+                    let p = predict(&Seen { q, psi_view: psi, psi_light: to_light });
+                    *sum = (sum.0 + f64::from(u8::from(open)), sum.1 + p, sum.2 + 1.0);
+                }
+            }
+        }
+        ANGLES_DEG.iter().zip(sums).map(|(a, s)| (*a, s.0 / s.2, s.1 / s.2)).collect()
+    }
+
+    struct Seen {
+        q: DVec2,
+        psi_view: f64,
+        psi_light: f64,
+    }
+
+    #[test]
+    fn zz_seen() {
+        for name in PRESET_NAMES {
+            let yarn = without_flyaways(&Yarn::preset(name).expect(name));
+            let density = SectionDensity::new(&yarn);
+            let table = SelfShadow::new(&density);
+            let plain = seen(&yarn, |s| (-table.at(s.psi_light, s.q)).exp());
+            let hot = seen(&yarn, |s| {
+                let (l, v) = (table.at(s.psi_light, s.q), table.at(s.psi_view, s.q));
+                let half = 0.5 * (s.psi_light - s.psi_view);
+                let half = half.sin().abs().asin();
+                let sigma = density.extinction(s.q);
+                let shared = 0.5 * sigma * density.fiber_radius * (1.0 / half.tan().max(1e-6) - (0.5 * PI - half));
+                let most = l.min(v).max(1e-9);
+                (-(l - most * (1.0 - (-shared / most).exp()))).exp()
+            });
+            for (a, b) in plain.iter().zip(&hot) {
+                println!("{name} {:5.0}: true {:.3} mean {:.3} hot {:.3}", a.0, a.1, a.2, b.2);
+            }
+        }
+    }
+
     #[test]
     fn lookups_stay_within_their_bound_between_slices_and_texels() {
         for name in PRESET_NAMES {
