@@ -67,8 +67,8 @@ def rectangle(area=None):
     return there.x, height - there.y - there.height, there.x + there.width, height - there.y
 
 
-def operator(call, area=None, **arguments):
-    """Calls an operator as from within a viewport."""
+def operator(call, area=None, invoke=False, **arguments):
+    """Calls an operator as from within a viewport; `invoke` as from a menu."""
     area = area or areas()[0]
     with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region(area)):
-        return list(call(**arguments))
+        return list(call("INVOKE_DEFAULT" if invoke else "EXEC_DEFAULT", **arguments))

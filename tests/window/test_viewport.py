@@ -233,3 +233,34 @@ def test_switching_engines_files_and_shading_leaves_no_view_behind(view):
     view.do("bpy.ops.wm.read_homefile(use_factory_startup=False, load_ui=False)")
     time.sleep(0.3)
     assert view.do("answer = not painter().busy()")
+
+
+def test_the_extension_can_go_while_it_draws(view):
+    view.do("bpy.context.scene.lisle.viewport_samples = 5000; look((0.3, 0.2, 0))")
+    view.until("answer = painter().busy()")
+    view.do("bpy.ops.preferences.addon_disable(module=PACKAGE)")
+    view.do(
+        "import threading\n"
+        "assert not any(thread.name.startswith('Lisle') for thread in threading.enumerate())\n"
+        "assert not hasattr(bpy.context.scene, 'lisle')"
+    )
+    time.sleep(0.5)
+    view.do("bpy.ops.preferences.addon_enable(module=PACKAGE)")
+    view.do("bpy.context.scene.render.engine = 'LISLE'; bpy.context.scene.lisle.viewport_samples = 2")
+    settled(view)
+
+
+def test_a_final_render_and_the_viewport_share_the_adapter(view):
+    view.do("bpy.context.scene.lisle.viewport_samples = 500; look((0.3, 0.2, 0))")
+    view.until("answer = painter().busy()")
+    assert view.do("answer = list(bpy.ops.render.render())") == ["FINISHED"]
+    view.do("bpy.context.scene.lisle.viewport_samples = 4")
+    settled(view)
+    # As from the menu: a job of its own, while the viewport goes on being redrawn.
+    view.do("bpy.context.scene.lisle.samples = 40; operator(bpy.ops.render.render, invoke=True)")
+    for number in range(10):
+        view.do(f"look((0.3, 0.02 * {number}, 0))")
+        time.sleep(0.1)
+    view.until("answer = not bpy.app.is_job_running('RENDER')")
+    view.do("[bpy.ops.wm.window_close() for window in bpy.context.window_manager.windows[1:]] and None")
+    view.until("answer = is_settled() or len(painter()._views) == 0")
