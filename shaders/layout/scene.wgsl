@@ -121,7 +121,7 @@ struct Yarn {
     core_views: u32,
     core_turns: u32,
     core_slope: f32,
-    padding: u32,
+    extinction_table: u32,
 }
 
 struct Material {

@@ -44,16 +44,21 @@ fn square_table(first: u32, size: u32, extent: f32, at: vec2f) -> f32 {
     return sum;
 }
 
-// Share of a light that the yarn's own fibers let through to a point [WuYuksel2018 §4.1].
-fn self_shadow(yarn: Yarn, section: SectionPoint, direction: vec3f) -> f32 {
+// A direction in a yarn's section, and how much of it lies there.
+struct SectionDirection {
+    unit: vec2f,
+    size: f32,
+}
+
+fn section_direction(section: SectionPoint, direction: vec3f) -> SectionDirection {
     let in_section = vec2f(dot(direction, section.x), dot(direction, section.y));
     let size = length(in_section);
-    if size < 1e-4 {
-        return 1.0;
-    }
+    return SectionDirection(in_section / max(size, 1e-6), size);
+}
+
+// Optical depth of the yarn's own fibers from a point towards a direction [WuYuksel2018 §4.1].
+fn self_depth(yarn: Yarn, q: vec2f, l: vec2f) -> f32 {
     // The table's light shines along its x axis.
-    let l = in_section / size;
-    let q = section.position;
     let turned = vec2f(dot(q, l), l.x * q.y - l.y * q.x);
     // Fibers all around a point that lies beyond the table towards the dark side still shade it.
     let at = vec2f(max(turned.x, -yarn.shadow_extent * 0.98), turned.y);
@@ -61,12 +66,40 @@ fn self_shadow(yarn: Yarn, section: SectionPoint, direction: vec3f) -> f32 {
     let slice = u32(place) % yarn.shadow_slices;
     let next = (slice + 1u) % yarn.shadow_slices;
     let texels = yarn.shadow_size * yarn.shadow_size;
-    let depth = mix(
+    return mix(
         square_table(yarn.shadow_table + slice * texels, yarn.shadow_size, yarn.shadow_extent, at),
         square_table(yarn.shadow_table + next * texels, yarn.shadow_size, yarn.shadow_extent, at),
         place - floor(place),
     );
-    return exp(-depth);
+}
+
+// What a point's lights share: it is seen, so that no fiber lies between it and the viewer.
+struct SeenPoint {
+    section: SectionPoint,
+    view: vec2f,
+    depth_to_viewer: f32,
+    // sigma r / 2.
+    common_depth: f32,
+}
+
+fn seen_point(yarn: Yarn, section: SectionPoint, view: vec3f) -> SeenPoint {
+    let v = section_direction(section, view);
+    let extinction = square_table(yarn.extinction_table, yarn.shadow_size, yarn.shadow_extent, section.position);
+    return SeenPoint(section, v.unit, self_depth(yarn, section.position, v.unit), 0.5 * extinction * yarn.fiber_radius);
+}
+
+// Share of a light that the yarn's own fibers let through to a point that is seen; derived and tested in
+// native/precompute/src/self_shadow.rs, toward_light_of_seen.
+fn self_shadow(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> f32 {
+    let l = section_direction(seen.section, direction);
+    if l.size < 1e-4 {
+        return 1.0;
+    }
+    let depth = self_depth(yarn, seen.section.position, l.unit);
+    let half = 0.5 * acos(clamp(dot(l.unit, seen.view), -1.0, 1.0));
+    let in_common = seen.common_depth * (1.0 / max(tan(half), 1e-6) - 0.5 * PI + half);
+    let most = max(min(depth, seen.depth_to_viewer), 1e-9);
+    return exp(most * (1.0 - exp(-in_common / most)) - depth);
 }
 
 // Share of the sky that the yarn's own fibers leave open at a point [WuYuksel2018 §4.2].

@@ -3,10 +3,16 @@
 
 @group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
 
-// The drawn chord lies beside the curve, by a thin fiber's width or more: the pixel's offset is measured from the chord. What second
-// derivatives leave of the difference is folded back into the fiber.
-fn folded(offset: f32) -> f32 {
-    return abs(fract(0.25 * offset + 0.75) * 4.0 - 2.0) - 1.0;
+// The drawn chord lies beside the curve by up to a quarter of a pixel: by the width of a thin fiber, whose offsets would all be
+// beyond its edge. There the pixel's offset is measured from the chord, and what second derivatives leave of the difference folded
+// back, where every offset is as likely. A thicker fiber is its own measure.
+fn is_thin(radius_pixels: f32) -> bool {
+    return radius_pixels < CHORD_ERROR;
+}
+
+fn within_fiber(offset: f32, radius_pixels: f32) -> f32 {
+    let folded = abs(fract(0.25 * offset + 0.75) * 4.0 - 2.0) - 1.0;
+    return select(clamp(offset, -1.0, 1.0), folded, is_thin(radius_pixels));
 }
 
 // From a fiber's point to its chord at the same parameter.
@@ -23,7 +29,9 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let scale = scale_of(yarn, s);
     let width = width_factor(yarn, mix_detail(scale.ends, t), index, f);
     let steps = fiber_steps(yarn, s, index / CHUNK * CHUNK, scale.radius_pixels);
-    let at = to_pixel(frame.pixel_from_render, f.position + to_chord(f, t, steps));
+    let radius_pixels = max(pixels_at(f.position, yarn.fiber_radius * p.radius * width), 1e-20);
+    let beside = select(vec3f(0.0), to_chord(f, t, steps), is_thin(radius_pixels));
+    let at = to_pixel(frame.pixel_from_render, f.position + beside);
     // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.
     let moved = (frame.pixel_from_render * vec4f(f.velocity, 0.0)).xyz;
     let on_screen = (moved.xy - at.xy * moved.z) / at.z;
@@ -31,7 +39,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let to_pixel_center = pixel - at.xy;
     let rest = clamp(dot(to_pixel_center, on_screen) / (speed * speed), -1.0 / place_scale(), 1.0 / place_scale());
     let across = (to_pixel_center.x * on_screen.y - to_pixel_center.y * on_screen.x) / speed;
-    let offset = folded(across / max(radius_in_pixels(yarn.fiber_radius * p.radius * width, at.z), 1e-20));
+    let offset = within_fiber(across / radius_pixels, radius_pixels);
     let center = f.position + f.velocity * rest;
     let tangent = normalize(f.velocity);
     let view = direction_to_viewer(frame.viewer, center);

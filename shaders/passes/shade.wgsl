@@ -24,6 +24,7 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
     let material = materials[draws[draw].material];
     let view = direction_to_viewer(frame.viewer, surface.position);
     let section = section_point(surface.tube.center, surface.tube.radius, surface.radial, surface.tangential, surface.position);
+    let seen = seen_point(yarn, section, view);
     var radiance = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i++) {
         let light = lights[i];
@@ -31,7 +32,7 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
         if all(incident.irradiance <= vec3f(0.0)) {
             continue;
         }
-        let open = self_shadow(yarn, section, incident.direction) * light_shadow(light, incident, surface.tube, surface.position);
+        let open = self_shadow(yarn, seen, incident.direction) * light_shadow(light, incident, surface.tube, surface.position);
         let angles = fiber_angles(surface.tangent, incident.direction, view);
         let cos_normal = dot(surface.normal, incident.direction);
         var reflected: vec3f;

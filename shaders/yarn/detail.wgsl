@@ -63,7 +63,7 @@ fn winding_pixels(yarn: Yarn, s: Segment, amplitude: f32, radius_pixels: f32) ->
 }
 
 // However small the yarn on the screen, a step turns by no more than this (radians): its depth is a cubic.
-const MOST_TURNING: f32 = 1.0;
+const MOST_TURNING: f32 = 2.0;
 
 // Turning of a fiber about the yarn's axis along the segment, as seen from there: about its ply and with it.
 fn turning(yarn: Yarn, s: Segment) -> f32 {
@@ -82,8 +82,8 @@ fn fiber_steps(yarn: Yarn, s: Segment, first: u32, radius_pixels: f32) -> u32 {
     var amplitude = 0.5 * (1.0 - yarn.r_min);
     if first < yarn.flyaway_fibers {
         let loops = 0.5 * (yarn.loop_radius_mean + 2.0 * yarn.loop_radius_deviation - yarn.r_min);
-        let rise = max(yarn.tip_min_mean + yarn.tip_span_mean - 1.0, 0.0);
-        let width = clamp(max(abs(yarn.width_mean), 0.8 * yarn.width_deviation), 0.04, 0.45);
+        let rise = max(yarn.tip_min_mean + yarn.tip_span_mean + yarn.tip_span_deviation - 1.0, 0.0);
+        let width = clamp(max(abs(yarn.width_mean), 0.5 * yarn.width_deviation), 0.04, 0.45);
         amplitude = max(amplitude, max(loops, 2.0 * rise / (TAU * TAU * width * width)));
     }
     return steps_for(yarn, s, bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, amplitude, radius_pixels));

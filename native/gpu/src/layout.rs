@@ -129,7 +129,7 @@ shared! {
         core_views: u32,
         core_turns: u32,
         core_slope: f32,
-        padding: u32,
+        extinction_table: u32,
     }
     Material {
         color_r: Vec3,

@@ -45,6 +45,7 @@ impl TableBuffer {
             [pack_snorm([0.5 * height, *offset]), pack_snorm([dh / core_slope, dv / core_slope])]
         }));
         let shadow_table = self.append(tables.self_shadow.optical_depth.iter().copied());
+        let extinction_table = self.append(tables.self_shadow.extinction.iter().copied());
         let occlusion_table = self.append(tables.occlusion.visibility.iter().copied());
 
         let outer = yarn.outer_radius();
@@ -98,7 +99,7 @@ impl TableBuffer {
             core_views: core.views as u32,
             core_turns: core.turns as u32,
             core_slope,
-            padding: 0,
+            extinction_table,
         });
     }
 

@@ -20,7 +20,7 @@ const BOUND: f64 = 0.25;
 const ROUNDING: f64 = 0.02;
 /// What loops and hairs keep to instead, in yarn radii: all fibers of a chunk take as many steps as a typical hair needs, and a hair
 /// ends with its last whole step.
-const FLYAWAY_BOUND: f64 = 0.07;
+const FLYAWAY_BOUND: f64 = 0.04;
 
 /// Largest and 90 % quantile of the distances from the silhouette at which GPU and twin disagree; number of such pixels.
 fn departures(alpha: &[bool], twin: &[Pixel]) -> (f64, f64, usize) {

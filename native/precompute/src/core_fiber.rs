@@ -287,7 +287,11 @@ mod tests {
             for view in [0, VIEWS - 1] {
                 let expected = explicit_coverage(&yarn, &table, view, width);
                 println!("{name}, view {view}: coverage {:.4} for {expected:.4}", coverage(view, 0));
-                assert!((coverage(view, 0) / expected - 1.0).abs() < 0.01, "{name}: {} for {expected}", coverage(view, 0));
+                assert!(
+                    (coverage(view, 0) / expected - 1.0).abs() < 0.01,
+                    "{name}: {} for {expected}",
+                    coverage(view, 0)
+                );
                 assert!((coverage(view, 5) / expected - 1.0).abs() > 0.01, "{name}: an inner layer passes too");
             }
             // The views differ where the ply is flat.
