@@ -76,14 +76,18 @@ fn steps_for(yarn: Yarn, s: Segment, second_derivative_pixels: f32) -> u32 {
     return clamp(u32(ceil(steps)), 1u, MOST_STEPS);
 }
 
-// Steps of a chunk of fibers that begins at rank `first`. Among flyaways a hair bends most; the bound is that of a typical
-// one, so that the chord of a shorter or longer one may be off by more.
+// Yarn radius in pixels up to which the steps of a typical hair keep all of them within the chord error (smooth.rs measures 0.07 radii).
+const TYPICAL_HAIR_PIXELS: f32 = 3.5;
+
+// Steps of a chunk of fibers that begins at rank `first`. Among flyaways a hair bends most: a typical one, or close up a short and
+// far one, which few exceed.
 fn fiber_steps(yarn: Yarn, s: Segment, first: u32, radius_pixels: f32) -> u32 {
     var amplitude = 0.5 * (1.0 - yarn.r_min);
     if first < yarn.flyaway_fibers {
+        let close = radius_pixels > TYPICAL_HAIR_PIXELS;
         let loops = 0.5 * (yarn.loop_radius_mean + 2.0 * yarn.loop_radius_deviation - yarn.r_min);
-        let rise = max(yarn.tip_min_mean + yarn.tip_span_mean + yarn.tip_span_deviation - 1.0, 0.0);
-        let width = clamp(max(abs(yarn.width_mean), 0.5 * yarn.width_deviation), 0.04, 0.45);
+        let rise = max(yarn.tip_min_mean + yarn.tip_span_mean + select(0.0, yarn.tip_span_deviation, close) - 1.0, 0.0);
+        let width = clamp(max(abs(yarn.width_mean), select(0.8, 0.5, close) * yarn.width_deviation), 0.04, 0.45);
         amplitude = max(amplitude, max(loops, 2.0 * rise / (TAU * TAU * width * width)));
     }
     return steps_for(yarn, s, bend_pixels(s, radius_pixels) + winding_pixels(yarn, s, amplitude, radius_pixels));
