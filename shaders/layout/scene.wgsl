@@ -122,6 +122,10 @@ struct Yarn {
     core_turns: u32,
     core_slope: f32,
     extinction_table: u32,
+    seen_sky_table: u32,
+    seen_sky_size: u32,
+    padding_0: u32,
+    padding_1: u32,
 }
 
 struct Material {

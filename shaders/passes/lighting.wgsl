@@ -102,7 +102,20 @@ fn self_shadow(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> f32 {
     return exp(most * (1.0 - exp(-in_common / most)) - depth);
 }
 
-// Share of the sky that the yarn's own fibers leave open at a point [WuYuksel2018 §4.2].
+// What a point that is seen has of the sky beyond the mean over points there; sky_of_seen in native/precompute/src/self_shadow.rs.
+fn sky_of_seen(yarn: Yarn, seen: SeenPoint) -> f32 {
+    let share = vec2f(seen.depth_to_viewer, seen.common_depth) / vec2f(1.0 + seen.depth_to_viewer, seen.common_depth + 0.2);
+    let border = 1.0 - 1.0 / f32(yarn.seen_sky_size);
+    let place = clamp(2.0 * vec2f(share.x, sqrt(share.y)) - 1.0, vec2f(-border), vec2f(border));
+    return square_table(yarn.seen_sky_table, yarn.seen_sky_size, 1.0, place);
+}
+
+// Share of the sky that the yarn's own fibers leave open at a point that is seen.
+fn self_sky(yarn: Yarn, seen: SeenPoint) -> f32 {
+    return min(self_occlusion(yarn, seen.section) + sky_of_seen(yarn, seen), 1.0);
+}
+
+// The same, of all points there [WuYuksel2018 §4.2].
 fn self_occlusion(yarn: Yarn, section: SectionPoint) -> f32 {
     if frame.occlusion_table == 1u {
         if any(abs(section.position) >= vec2f(yarn.occlusion_extent)) {

@@ -50,7 +50,7 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
     } else {
         ambient = simple_ambient(material, sin_theta_o);
     }
-    return radiance + ambient * frame.ambient * self_occlusion(yarn, section) * sky_shadow(surface.tube, surface.position);
+    return radiance + ambient * frame.ambient * self_sky(yarn, seen) * sky_shadow(surface.tube, surface.position);
 }
 
 // The key of a pixel taken apart.

@@ -130,6 +130,10 @@ shared! {
         core_turns: u32,
         core_slope: f32,
         extinction_table: u32,
+        seen_sky_table: u32,
+        seen_sky_size: u32,
+        padding_0: u32,
+        padding_1: u32,
     }
     Material {
         color_r: Vec3,

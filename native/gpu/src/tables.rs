@@ -46,6 +46,7 @@ impl TableBuffer {
         }));
         let shadow_table = self.append(tables.self_shadow.optical_depth.iter().copied());
         let extinction_table = self.append(tables.self_shadow.extinction.iter().copied());
+        let seen_sky_table = self.append(tables.self_shadow.seen_sky.iter().copied());
         let occlusion_table = self.append(tables.occlusion.visibility.iter().copied());
 
         let outer = yarn.outer_radius();
@@ -100,6 +101,10 @@ impl TableBuffer {
             core_turns: core.turns as u32,
             core_slope,
             extinction_table,
+            seen_sky_table,
+            seen_sky_size: tables.self_shadow.seen_sky_size as u32,
+            padding_0: 0,
+            padding_1: 0,
         });
     }
 

@@ -39,6 +39,36 @@ pub struct SelfShadow {
     pub extinction: Vec<f32>,
     /// Fiber radius, in outer radii.
     pub fiber_radius: f32,
+    /// How much more of the sky is open to a point that is seen, as `[y][x]`: texel centres at x = τ / (1 + τ) for the depth τ towards the
+    /// viewer, y = √(c / (c + [`HALF_WAY`])) for the depth c that rays at right angles would have in common, by [`SelfShadow::sky_of_seen`].
+    pub seen_sky: Vec<f32>,
+    /// Texels along a side of `seen_sky`.
+    pub seen_sky_size: usize,
+}
+
+/// c in the middle of the squared y axis of [`SelfShadow::seen_sky`].
+pub const HALF_WAY: f64 = 0.2;
+const SEEN_SKY_SIZE: usize = 32;
+
+/// Depth that a ray to a light has in common with the ray to the viewer, `angle` radians from it; at most `most`. `unit` is σ r/2.
+fn in_common(unit: f64, angle: f64, most: f64) -> f64 {
+    let half = 0.5 * angle;
+    let shared = unit * (half.tan().max(1e-6).recip() - 0.5 * PI + half);
+    let most = most.max(1e-9);
+    most * (1.0 - (-shared / most).exp())
+}
+
+/// Mean over all directions of what [`in_common`] lets through more. Lights farther from the viewer shine through more of the yarn: the share let
+/// through falls about as cos² of half the angle, as on a lit sphere.
+fn seen_sky(depth: f64, unit: f64) -> f64 {
+    const STEPS: u32 = 256;
+    let step = |k: u32| {
+        // Steps close up towards the viewer, about whom it happens.
+        let x = (f64::from(k) + 0.5) / f64::from(STEPS);
+        let (angle, width) = (PI * x.powi(3), 3.0 * x * x / f64::from(STEPS));
+        width * (0.5 * angle).cos().powi(2) * ((in_common(unit, angle, depth) - depth).exp() - (-depth).exp())
+    };
+    (0..STEPS).map(step).sum()
 }
 
 /// Half side of the square that slices cover, in outer radii: the plies and most loops.
@@ -94,6 +124,14 @@ impl SelfShadow {
             optical_depth,
             extinction,
             fiber_radius: density.fiber_radius as f32,
+            seen_sky: (0..SEEN_SKY_SIZE * SEEN_SKY_SIZE)
+                .map(|k| {
+                    let at = |k: usize| (k as f64 + 0.5) / SEEN_SKY_SIZE as f64;
+                    let (x, y) = (at(k % SEEN_SKY_SIZE), at(k / SEEN_SKY_SIZE).powi(2));
+                    seen_sky(x / (1.0 - x), HALF_WAY * y / (1.0 - y)) as f32
+                })
+                .collect(),
+            seen_sky_size: SEEN_SKY_SIZE,
         }
     }
 
@@ -105,11 +143,20 @@ impl SelfShadow {
     /// density of σ / 2r that is σ r/2 (cot h − π/2 + h) fibers, for a σ that is even around the point; they cannot be more than either ray meets in all.
     pub fn toward_light_of_seen(&self, psi_light: f64, psi_view: f64, q: DVec2) -> f64 {
         let (light, view) = (self.at(psi_light, q), self.at(psi_view, q));
-        let half = (0.5 * (psi_light - psi_view)).sin().abs().asin();
-        let extinction = bilinear(&self.extinction, self.size, f64::from(self.extent), q);
-        let shared = 0.5 * extinction * f64::from(self.fiber_radius) * (half.tan().max(1e-6).recip() - 0.5 * PI + half);
-        let most = light.min(view).max(1e-9);
-        light - most * (1.0 - (-shared / most).exp())
+        let angle = 2.0 * (0.5 * (psi_light - psi_view)).sin().abs().asin();
+        light - in_common(self.unit_in_common(q), angle, light.min(view))
+    }
+
+    /// Share of the sky that is open to a point that a viewer sees, above the mean over points there, seen or not.
+    pub fn sky_of_seen(&self, psi_view: f64, q: DVec2) -> f64 {
+        let (depth, unit) = (self.at(psi_view, q), self.unit_in_common(q));
+        let place = DVec2::new(depth / (1.0 + depth), (unit / (unit + HALF_WAY)).sqrt());
+        bilinear(&self.seen_sky, self.seen_sky_size, 1.0, 2.0 * place - 1.0)
+    }
+
+    /// σ r/2.
+    fn unit_in_common(&self, q: DVec2) -> f64 {
+        0.5 * bilinear(&self.extinction, self.size, f64::from(self.extent), q) * f64::from(self.fiber_radius)
     }
 
     /// Trilinear lookup: light at angle `psi` radians in the section, `q` in section coordinates.
@@ -205,11 +252,30 @@ mod tests {
 
     /// Light that reaches points which a viewer sees, for several angles between light and viewer: (angle, true mean, predicted mean).
     fn seen(yarn: &Yarn, predict: impl Fn(&Seen) -> f64) -> Vec<(f64, f64, f64)> {
-        const ANGLES_DEG: [f64; 8] = [0.0, 5.0, 15.0, 30.0, 60.0, 90.0, 130.0, 180.0];
+        seen_from(yarn, &[0.0, 5.0, 15.0, 30.0, 60.0, 90.0, 130.0, 180.0], 1500, predict)
+    }
+
+    /// Every 4° of a turn, around the viewer's own direction.
+    const SKY_DEG: [f64; 90] = {
+        let mut angles = [0.0; 90];
+        let mut k = 0;
+        while k < 90 {
+            angles[k] = 4.0 * k as f64 + 2.0;
+            k += 1;
+        }
+        angles
+    };
+
+    fn seen_from(
+        yarn: &Yarn,
+        angles_deg: &[f64],
+        sections: u32,
+        predict: impl Fn(&Seen) -> f64,
+    ) -> Vec<(f64, f64, f64)> {
         let (dealer, mut random) = (Sections::new(yarn), Random::new(6));
         let radius = yarn.fiber_radius / yarn.outer_radius();
-        let mut sums = vec![(0.0, 0.0, 0.0); ANGLES_DEG.len()];
-        for _ in 0..1500 {
+        let mut sums = vec![(0.0, 0.0, 0.0); angles_deg.len()];
+        for _ in 0..sections {
             let fibers = dealer.draw(&mut random);
             for _ in 0..20 {
                 let psi = TAU * random.unit();
@@ -224,7 +290,7 @@ mod tests {
                 });
                 let Some((own, depth)) = met.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
                 let q = ray + view * depth;
-                for (k, angle) in ANGLES_DEG.iter().enumerate() {
+                for (k, angle) in angles_deg.iter().enumerate() {
                     let to_light = psi + angle.to_radians();
                     let light = DVec2::from_angle(to_light);
                     let open = !fibers.iter().enumerate().any(|(k, fiber)| {
@@ -237,7 +303,7 @@ mod tests {
                 }
             }
         }
-        ANGLES_DEG.iter().zip(sums).map(|(a, s)| (*a, s.0 / s.2, s.1 / s.2)).collect()
+        angles_deg.iter().zip(sums).map(|(a, s)| (*a, s.0 / s.2, s.1 / s.2)).collect()
     }
 
     struct Seen {
@@ -264,6 +330,26 @@ mod tests {
             worst_mean = mean.iter().map(|(_, e, p)| (e - p).abs()).fold(worst_mean, f64::max);
         }
         assert!(worst_mean > 0.3, "{worst_mean}");
+    }
+
+    #[test]
+    fn points_that_are_seen_have_as_much_sky_as_explicit_fibers_leave_them() {
+        for name in PRESET_NAMES {
+            let yarn = without_flyaways(&Yarn::preset(name).expect(name));
+            let density = SectionDensity::new(&yarn);
+            let (table, occlusion) = (SelfShadow::new(&density), crate::Occlusion::new(&density));
+            // Lights all around at even angles are the sky.
+            let mean = |predict: &dyn Fn(&Seen) -> f64| {
+                let found = seen_from(&yarn, &SKY_DEG, 100, predict);
+                let count = found.len() as f64;
+                (found.iter().map(|f| f.1).sum::<f64>() / count, found.iter().map(|f| f.2).sum::<f64>() / count)
+            };
+            let (expected, predicted) = mean(&|s| (occlusion.at(s.q) + table.sky_of_seen(s.psi_view, s.q)).min(1.0));
+            let (_, plain) = mean(&|s| occlusion.at(s.q));
+            println!("{name}: {expected:.3} of the sky, {predicted:.3} predicted, {plain:.3} for all points");
+            assert!((predicted - expected).abs() < 0.02, "{name}: {predicted} for {expected}");
+            assert!((plain - expected).abs() > 0.02, "{name}: the mean over all points passes too");
+        }
     }
 
     #[test]
