@@ -1,6 +1,8 @@
 // The scene's bindings, and how a segment is read from them.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+// Not a uniform: Mesa 22's software driver compiles a shader anew for every value of a uniform that decides a branch,
+// and keeps them all.
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> draws: array<Draw>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> knot_positions: array<f32>;

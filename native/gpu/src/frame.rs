@@ -111,11 +111,11 @@ impl FrameBuffers {
         if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
             return Ok(buffers);
         }
-        let uniform = |label, size: usize| {
+        let uniform = |label, size: usize, kind| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 size: size as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                usage: kind | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             })
         };
@@ -138,8 +138,8 @@ impl FrameBuffers {
             lights: empty_storage(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
             views: empty_storage(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
             shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
-            uniform: uniform("frame", size_of::<layout::Frame>()),
-            shadow_uniform: uniform("shadow pass", 16),
+            uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::STORAGE),
+            shadow_uniform: uniform("shadow pass", 16, wgpu::BufferUsages::UNIFORM),
             capacity,
         })
     }
