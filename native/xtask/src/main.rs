@@ -1,4 +1,4 @@
-//! `cargo xtask demo | test | bench | package`: everything that one command has to do on a fresh machine.
+//! `cargo xtask demo | test | bench | fidelity | package`: everything that one command has to do on a fresh machine.
 //!
 //! Set-up is done once and remembered with stamps under `target/`; a second run goes straight to the work.
 
@@ -8,6 +8,7 @@ mod debian;
 mod demo;
 mod extension;
 mod failure;
+mod fidelity;
 mod python;
 mod shell;
 mod test;
@@ -24,6 +25,7 @@ cargo xtask COMMAND
   demo     render the knitted animation of examples/ through Blender to out/demo/
   test     every test: Rust, Python, inside Blender; formatting and lints; the extension's manifest
   bench    the benchmark; further arguments go to it
+  fidelity the renderer beside the path tracer: out/fidelity/; further arguments go to it
   package  build the Blender extension with its wheel: target/extension/
 ";
 
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
         (Some("demo"), []) => demo::run(),
         (Some("test"), []) => test::run(),
         (Some("bench"), rest) => bench::run(rest),
+        (Some("fidelity"), rest) => fidelity::run(rest),
         (Some("package"), []) => package(),
         (Some("help" | "--help" | "-h"), _) => {
             print!("{USAGE}");

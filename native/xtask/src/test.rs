@@ -1,5 +1,6 @@
 //! Every test there is.
 
+use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
@@ -9,9 +10,18 @@ use crate::python::{Environment, any};
 use crate::shell::{cargo, root, say, target, tee};
 use crate::{extension, vulkan, wheel};
 
-/// What the tests of the package need besides it: readers of its files, the type checker, and another path tracer.
-const PYTHON_TESTS: [&str; 7] =
-    ["numpy>=1.26", "pytest>=8", "usd-core>=24.11", "mypy>=1.18", "pillow", "OpenEXR>=3.3", "mitsuba>=3.6"];
+/// What the tests of the package need besides it: readers of its files, the type checker, another path tracer, and a
+/// measure of how different pictures look.
+const PYTHON_TESTS: [&str; 8] = [
+    "numpy>=1.26",
+    "pytest>=8",
+    "usd-core>=24.11",
+    "mypy>=1.18",
+    "pillow",
+    "OpenEXR>=3.3",
+    "mitsuba>=3.6",
+    "flip-evaluator>=1.7",
+];
 
 /// Lines by which the runners close.
 const CLOSING: [&str; 4] = ["test result: ", "===", "Success: ", "All checks passed"];
@@ -70,6 +80,14 @@ fn check(what: &str, command: &mut Command) -> Result<Vec<String>, Failure> {
     crate::shell::run(what, command).map(|()| Vec::new())
 }
 
+/// An environment with the wheel, what its tests need, and a graphics driver.
+pub fn environment(wheel: &Path) -> Result<Environment, Failure> {
+    let python = Environment::new("test", &any()?, &PYTHON_TESTS)?;
+    python.install(wheel)?;
+    vulkan::ensure(&python)?;
+    Ok(python)
+}
+
 /// Everything, in the order in which failures are cheap to find.
 pub fn run() -> Result<(), Failure> {
     let start = Instant::now();
@@ -83,10 +101,7 @@ pub fn run() -> Result<(), Failure> {
     let wheel = wheel::native()?;
     let mut environment = None;
     report.step("set-up", || {
-        let python = Environment::new("test", &any()?, &PYTHON_TESTS)?;
-        python.install(&wheel)?;
-        vulkan::ensure(&python)?;
-        environment = Some(python);
+        environment = Some(self::environment(&wheel)?);
         Ok(Vec::new())
     });
 

@@ -1,0 +1,133 @@
+"""What is looked at, from where, and in which light. Lengths are radii of the yarn."""
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import lisle
+import numpy as np
+
+REPOSITORY = Path(__file__).parents[2]
+DATA = Path(os.environ.get("LISLE_DATA", REPOSITORY.parent / "shared" / "data"))
+
+SPAN = 48.0
+"""Extent of a model: what a far view sees, and some more."""
+
+VIEWS = {"near": (6.0, 96), "middle": (24.0, 96), "far": (40.0, 48)}
+"""Height of the picture, and its pixels: a yarn is 32, 8 and 2.4 pixels wide."""
+
+SUNS = {"front": (0.3, -0.4, -1.0), "back": (0.2, -0.4, 1.0), "grazing": (1.0, -0.2, -0.15)}
+"""Directions in which light travels, along the picture's right, its top, and towards the camera."""
+
+LIGHTS = (*SUNS, "sky")
+
+MATERIALS = {"light": "cotton", "dark": "rayon-3"}
+
+BACKWARD = np.array([0.15, -1.0, 0.2]) / np.linalg.norm([0.15, -1.0, 0.2])
+"""Towards the camera."""
+
+HALF_ANGLE_RAD = 0.3
+
+
+def straight() -> lisle.Yarns:
+    """One yarn along X."""
+    x = np.linspace(-0.5 * SPAN, 0.5 * SPAN, 49)
+    return lisle.Yarns(np.column_stack([x, 0 * x, 0 * x]), [0, len(x)], yarn_radius=1.0)
+
+
+def knit() -> lisle.Yarns:
+    """A stockinette swatch; a stitch is about 8 wide and 4 high."""
+    return lisle.knit_swatch(courses=11, wales=6, yarn_radius=1.0)
+
+
+WEAVE_SPACING = 3.8
+WEAVE_AMPLITUDE = 1.05
+
+
+def woven() -> lisle.Yarns:
+    """Plain weave: cosines so far apart that no two yarns meet."""
+    count = int(SPAN / WEAVE_SPACING)
+    places = WEAVE_SPACING * (np.arange(count) - 0.5 * (count - 1))
+    along = places[0] + WEAVE_SPACING * (np.arange(8 * count + 1) / 8 - 0.5)
+    curves = []
+    for index, place in enumerate(places):
+        side = (-1) ** index * WEAVE_AMPLITUDE
+        # Crossings of one set lie at the places of the other.
+        wave = np.cos(np.pi * (along - places[0]) / WEAVE_SPACING)
+        across = np.full_like(along, place)
+        curves.append(np.column_stack([along, side * wave, across]))
+        curves.append(np.column_stack([across, -side * wave, along]))
+    offsets = len(along) * np.arange(len(curves) + 1)
+    return lisle.Yarns(np.concatenate(curves), offsets, yarn_radius=1.0)
+
+
+def glove() -> lisle.Yarns:
+    """A piece of one side of a knitted glove: all of it takes the reference more memory than most machines have.
+
+    Its thinnest side is turned towards the camera, and the middle of that side lies at the origin.
+    """
+    whole = lisle.load(DATA / "yarns" / "glove.bcc")
+    radius = float(whole.radii.mean())
+    points = whole.points.astype(np.float64) / radius
+    thin, *wide = np.argsort(np.ptp(points, axis=0))
+    # A proper rotation, so that the twist keeps its hand.
+    frame = np.zeros((3, 3))
+    frame[0, wide[0]], frame[2, wide[1]] = 1.0, 1.0
+    frame[1] = np.cross(frame[2], frame[0])
+    assert abs(frame[1, thin]) == 1.0
+    points = points @ frame.T
+    points -= 0.5 * (points.min(axis=0) + points.max(axis=0))
+    beside = np.abs(points[:, [0, 2]]).max(axis=1)
+    points[:, 1] -= points[beside < 4, 1].min() + 1.0
+    pieces = []
+    for start, end in zip(whole.offsets[:-1], whole.offsets[1:], strict=True):
+        inside = start + np.flatnonzero((beside[start:end] < 0.5 * SPAN) & (points[start:end, 1] < 0.5 * SPAN))
+        runs = np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1)
+        pieces += [points[run] for run in runs if len(run) >= 4]
+    offsets = np.concatenate([[0], np.cumsum([len(piece) for piece in pieces])])
+    return lisle.Yarns(np.concatenate(pieces), offsets, yarn_radius=1.0)
+
+
+MODELS: dict[str, Callable[[], lisle.Yarns]] = {"straight": straight, "knit": knit, "woven": woven, "glove": glove}
+
+
+def models() -> tuple[str, ...]:
+    """Those that can be made here."""
+    return tuple(name for name in MODELS if name != "glove" or (DATA / "yarns" / "glove.bcc").is_file())
+
+
+def frame() -> np.ndarray:
+    """Right, top, and towards the camera, as columns."""
+    right = np.cross([0.0, 0.0, 1.0], BACKWARD)
+    right /= np.linalg.norm(right)
+    return np.column_stack([right, np.cross(BACKWARD, right), BACKWARD])
+
+
+def camera(view: str) -> lisle.Camera:
+    """A square picture of the origin."""
+    height, pixels = VIEWS[view]
+    distance = 0.5 * height / np.tan(HALF_ANGLE_RAD) + 2.0
+    world = np.eye(4)
+    world[:3, :3] = frame()
+    world[:3, 3] = distance * BACKWARD
+    near, far = 0.05 * distance, 20 * distance + 10 * SPAN
+    clip = np.zeros((4, 4))
+    clip[0, 0] = clip[1, 1] = 1 / np.tan(HALF_ANGLE_RAD)
+    clip[2, 2:] = (near + far) / (near - far), 2 * near * far / (near - far)
+    clip[3, 2] = -1
+    return lisle.Camera(world, clip, (pixels, pixels))
+
+
+def sun(direction: tuple[float, float, float]) -> lisle.Sun:
+    """A sun without a penumbra that shines along a direction as in `SUNS`."""
+    return lisle.Sun(direction=frame() @ direction, strength=3.0)
+
+
+def scene(
+    yarns: lisle.Yarns, yarn: lisle.Yarn, material: lisle.Material, view: str, light: str | lisle.Sun
+) -> lisle.Scene:
+    """Yarns under one light."""
+    lights = [light] if isinstance(light, lisle.Sun) else [sun(SUNS[light])] if light in SUNS else []
+    made = lisle.Scene(camera(view), lights, (1.0, 1.0, 1.0) if light == "sky" else (0.0, 0.0, 0.0))
+    made.add(yarns, yarn, material)
+    return made
