@@ -30,6 +30,7 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, step: u32, pixel: vec2u) -> Su
 
 @compute @workgroup_size(64)
 fn resolve_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = frame_buffer;
     let item = folded_index(workgroup, local, RESOLVE_LANES);
     if item >= resolve_dispatch[CORE_LIST + 3u] {
         return;

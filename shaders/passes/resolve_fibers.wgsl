@@ -59,6 +59,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
 
 @compute @workgroup_size(64)
 fn resolve_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = frame_buffer;
     let item = folded_index(workgroup, local, RESOLVE_LANES);
     if item >= resolve_dispatch[FIBER_LIST + 3u] {
         return;

@@ -2,7 +2,9 @@
 
 // Not a uniform: Mesa 22's software driver compiles a shader anew for every value of a uniform that decides a branch,
 // and keeps them all.
-@group(0) @binding(0) var<storage, read> frame: Frame;
+@group(0) @binding(0) var<storage, read> frame_buffer: Frame;
+// Every entry point begins by reading it: inner loops then have it at hand.
+var<private> frame: Frame;
 @group(0) @binding(1) var<storage, read> draws: array<Draw>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> knot_positions: array<f32>;

@@ -15,6 +15,7 @@ struct ShadowPass {
 
 @compute @workgroup_size(64)
 fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = frame_buffer;
     let segment = folded_index(workgroup, local, LANES);
     if segment >= frame.segment_count {
         return;

@@ -72,6 +72,7 @@ fn find_segment(item: u32) -> Found {
 
 @compute @workgroup_size(64)
 fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = frame_buffer;
     let item = folded_index(workgroup, local, LANES);
     if item >= dispatch[3] {
         return;
