@@ -20,6 +20,8 @@ pub struct SectionDensity {
     fiber_slope: f64,
     /// 1/e_N and 1/e_B, in units of the outer radius.
     inverse_half_axes: DVec2,
+    /// Share of a yarn's fibers that are others than the one a point lies on.
+    others: f64,
     /// Fibers per area of the section, at even steps of the squared relative distance from the ply centre.
     profile: Vec<f64>,
 }
@@ -39,6 +41,7 @@ impl SectionDensity {
             ply_slope: if yarn.plies > 1 { TAU * outer / yarn.ply_twist } else { 0.0 },
             fiber_slope: TAU * outer / yarn.fiber_twist,
             inverse_half_axes: half_axes.recip(),
+            others: 1.0 - 1.0 / f64::from(yarn.plies * yarn.fibers_per_ply),
             profile: radial_profile(yarn).into_iter().map(|density| per_disc * density).collect(),
         }
     }
@@ -48,13 +51,13 @@ impl SectionDensity {
         self.plies_at(q).map(|(fibers, _)| fibers).sum()
     }
 
-    /// Fibers that a ray in the section meets per length at q: fibers per area × diameter × stretch.
+    /// Fibers that a ray in the section meets per length at q, other than the one it starts on: fibers per area × diameter × stretch.
     ///
     /// A fiber of lateral slope t crosses the section in an ellipse, whose width across the ray is √(1 + (t × ray)²)
     /// diameters; √(1 + t²/2) on average over rays.
     pub fn extinction(&self, q: DVec2) -> f64 {
         let stretched = |(fibers, slope): (f64, DVec2)| fibers * (1.0 + 0.5 * slope.length_squared()).sqrt();
-        self.plies_at(q).map(stretched).sum::<f64>() * (2.0 * self.fiber_radius)
+        self.plies_at(q).map(stretched).sum::<f64>() * (2.0 * self.fiber_radius * self.others)
     }
 
     /// Each ply's fibers per unit area at q and their lateral slope (in the ply's own axes: radial, tangential).
