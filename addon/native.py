@@ -29,3 +29,19 @@ def problem():
     except NativeError as error:
         return str(error)
     return None
+
+
+def native_yarns(lisle, curves, name):
+    """`lisle.Yarns` of CurveArrays; `name` is what its errors call them."""
+    return lisle.Yarns(
+        curves.points,
+        curves.offsets,
+        closed=curves.closed,
+        basis=curves.basis,
+        radii=curves.radii,
+        nurbs_order=curves.nurbs_order,
+        nurbs_weights=curves.nurbs_weights,
+        nurbs_knots_mode=curves.nurbs_knots_mode,
+        length_coordinates=curves.length_coordinates,
+        name=name,
+    )

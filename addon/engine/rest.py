@@ -7,6 +7,7 @@ drawn first: if the job is not at the reference frame, the scene is evaluated th
 
 from ..core.errors import RestShapeError
 from ..export.scene import collect
+from ..native import native_yarns
 
 
 class RestShapes:
@@ -86,21 +87,6 @@ class RestShapes:
         digest = rest.digest()
         kept = self._yarns.get(key)
         if kept is None or kept[0] != digest:
-            kept = digest, _native_yarns(lisle, key, rest)
+            kept = digest, native_yarns(lisle, rest, key[0])
             self._yarns[key] = kept
         return kept[1] if at_rest is current else kept[1].with_points(current.points)
-
-
-def _native_yarns(lisle, key, curves):
-    return lisle.Yarns(
-        curves.points,
-        curves.offsets,
-        closed=curves.closed,
-        basis=curves.basis,
-        radii=curves.radii,
-        nurbs_order=curves.nurbs_order,
-        nurbs_weights=curves.nurbs_weights,
-        nurbs_knots_mode=curves.nurbs_knots_mode,
-        length_coordinates=curves.length_coordinates,
-        name=key[0],
-    )

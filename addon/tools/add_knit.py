@@ -7,8 +7,7 @@ from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from .. import native
 from ..core.errors import LisleError
-from ..presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS
-from .yarn_objects import add_material, yarn_data
+from .yarn_objects import NewMaterial, yarn_data
 
 _PATTERNS = (
     ("stockinette", "Stockinette", "Knit stitches on the front, purl on the back"),
@@ -19,7 +18,7 @@ _PATTERNS = (
 )
 
 
-class _AddKnit(AddObjectHelper):
+class _AddKnit(NewMaterial, AddObjectHelper):
     bl_options = {"REGISTER", "UNDO"}
 
     pattern: EnumProperty(name="Pattern", description="How stitches follow each other", items=_PATTERNS)
@@ -40,12 +39,6 @@ class _AddKnit(AddObjectHelper):
         step=0.01,
         subtype="DISTANCE",
         unit="LENGTH",
-    )
-    yarn: EnumProperty(
-        name="Yarn", description="What the new material is spun like", items=YARN_ITEMS, default=DEFAULT_YARN
-    )
-    fiber: EnumProperty(
-        name="Fiber", description="What the new material scatters light like", items=FIBER_ITEMS, default=DEFAULT_FIBER
     )
 
     def draw(self, _context):
@@ -79,7 +72,7 @@ class _AddKnit(AddObjectHelper):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         data = yarn_data(self.NAME, yarns)
-        add_material(data, self.NAME, self.yarn, self.fiber)
+        self.add_material(data, self.NAME)
         object_data_add(context, data, operator=self)
         return {"FINISHED"}
 

@@ -4,17 +4,16 @@
 from pathlib import Path
 
 import bpy
-from bpy.props import CollectionProperty, EnumProperty, FloatProperty, StringProperty
+from bpy.props import CollectionProperty, FloatProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 from bpy_extras.object_utils import object_data_add
 
 from .. import native
 from ..core.errors import LisleError
-from ..presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS
-from .yarn_objects import add_material, yarn_data
+from .yarn_objects import NewMaterial, yarn_data
 
 
-class LISLE_OT_import_bcc(bpy.types.Operator, ImportHelper):
+class LISLE_OT_import_bcc(bpy.types.Operator, NewMaterial, ImportHelper):
     """Import yarn curves in the BCC format"""
 
     bl_idname = "lisle.import_bcc"
@@ -42,12 +41,6 @@ class LISLE_OT_import_bcc(bpy.types.Operator, ImportHelper):
         precision=5,
         subtype="DISTANCE",
     )
-    yarn: EnumProperty(
-        name="Yarn", description="What the new material is spun like", items=YARN_ITEMS, default=DEFAULT_YARN
-    )
-    fiber: EnumProperty(
-        name="Fiber", description="What the new material scatters light like", items=FIBER_ITEMS, default=DEFAULT_FIBER
-    )
 
     def draw(self, _context):
         layout = self.layout
@@ -74,7 +67,7 @@ class LISLE_OT_import_bcc(bpy.types.Operator, ImportHelper):
             except (lisle.Error, OSError, ValueError) as error:
                 self.report({"ERROR"}, str(error))
                 continue
-            add_material(data, path.stem, self.yarn, self.fiber)
+            self.add_material(data, path.stem)
             object_data_add(context, data)
             imported += 1
         return {"FINISHED"} if imported else {"CANCELLED"}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Object › Store Length Coordinate: the yarn's length at a frame, kept as an attribute of its points."""
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, IntProperty
@@ -70,17 +72,9 @@ def _store(lisle, obj, depsgraph):
             f"or store an attribute '{NAME}' in the geometry nodes",
         )
     try:
-        lengths = lisle.Yarns(
-            curves.points,
-            curves.offsets,
-            closed=curves.closed,
-            basis=curves.basis,
-            radii=curves.radii,
-            nurbs_order=curves.nurbs_order,
-            nurbs_weights=curves.nurbs_weights,
-            nurbs_knots_mode=curves.nurbs_knots_mode,
-            name=obj.name,
-        ).length_coordinates
+        # Lengths stored before must not measure themselves.
+        fresh = replace(curves, length_coordinates=None)
+        lengths = native.native_yarns(lisle, fresh, obj.name).length_coordinates
     except lisle.Error as error:
         raise GeometryError(obj.name, str(error)) from error
     attribute = data.attributes.get(NAME)

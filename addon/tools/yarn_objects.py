@@ -3,6 +3,9 @@
 
 import bpy
 import numpy as np
+from bpy.props import EnumProperty
+
+from ..presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS
 
 _CATMULL_ROM, _POLY, _B_SPLINE = 0, 1, 4
 """lisle's codes."""
@@ -40,11 +43,21 @@ def curves_data(name, points, offsets, radii, kind="CATMULL_ROM"):
     return data
 
 
-def add_material(data, name, yarn, fiber):
-    """Gives curves a new material of these presets."""
-    material = bpy.data.materials.new(name)
-    material.lisle.yarn.preset, material.lisle.fiber.preset = yarn, fiber
-    data.materials.append(material)
+class NewMaterial:
+    """For operators that add yarns: presets to choose, and the material made of them."""
+
+    yarn: EnumProperty(
+        name="Yarn", description="What the new material is spun like", items=YARN_ITEMS, default=DEFAULT_YARN
+    )
+    fiber: EnumProperty(
+        name="Fiber", description="What the new material scatters light like", items=FIBER_ITEMS, default=DEFAULT_FIBER
+    )
+
+    def add_material(self, data, name):
+        """Gives curves a new material of the chosen presets."""
+        material = bpy.data.materials.new(name)
+        material.lisle.yarn.preset, material.lisle.fiber.preset = self.yarn, self.fiber
+        data.materials.append(material)
 
 
 def _attribute(data, name, kind, domain):

@@ -79,7 +79,7 @@ impl View {
     /// # Errors
     /// [`SceneError`] for matrices that are not finite, have no inverse or no near plane.
     pub fn new(camera: &Camera, size: [u32; 2]) -> Result<Self, SceneError> {
-        let invalid = |reason: &str| SceneError { what: "camera".into(), reason: reason.into() };
+        let invalid = |reason: &str| SceneError::input("camera", reason);
         if !camera.world_from_camera.is_finite() || !camera.clip_from_camera.is_finite() {
             return Err(invalid("a matrix has an entry that is not finite"));
         }

@@ -1,5 +1,4 @@
-use lisle_core::scattering::MaterialError;
-use lisle_core::yarn::YarnError;
+use lisle_core::scene::SceneError;
 use thiserror::Error;
 
 /// Why a picture could not be made.
@@ -24,22 +23,9 @@ pub enum Error {
         /// What it said.
         reason: String,
     },
-    /// An object's yarn is out of range.
-    #[error("object \"{object}\": {source}")]
-    Yarn {
-        /// The object's name.
-        object: String,
-        /// The parameter.
-        source: YarnError,
-    },
-    /// An object's material is out of range.
-    #[error("object \"{object}\": {source}")]
-    Material {
-        /// The object's name.
-        object: String,
-        /// The parameter.
-        source: MaterialError,
-    },
+    /// A part of the scene cannot be drawn.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
     /// Something else in the scene or the settings.
     #[error("{what}: {reason}")]
     Input {
@@ -56,11 +42,5 @@ pub enum Error {
 impl Error {
     pub(crate) fn input(what: impl Into<String>, reason: impl Into<String>) -> Self {
         Self::Input { what: what.into(), reason: reason.into() }
-    }
-}
-
-impl From<lisle_core::scene::SceneError> for Error {
-    fn from(error: lisle_core::scene::SceneError) -> Self {
-        Self::Input { what: error.what, reason: error.reason }
     }
 }

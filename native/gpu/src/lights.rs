@@ -2,8 +2,6 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
-pub(crate) use lisle_core::scene::validate_lights as validate;
-
 use crate::layout::{self, LIGHT_AREA, LIGHT_POINT, LIGHT_SUN};
 use crate::sampling::{basis, disc, r2, sphere};
 use crate::view::Bounds;

@@ -9,7 +9,7 @@ use crate::pipelines::Pipelines;
 use crate::tables::TableCache;
 use crate::upload::SceneBuffers;
 use crate::view::View;
-use crate::{AdapterInfo, Error, Image, Scene, Settings, lights};
+use crate::{AdapterInfo, Error, Image, Scene, Settings};
 
 /// How far a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ impl Renderer {
     /// The same scene and settings give the same bits on one adapter, whatever was drawn before.
     ///
     /// # Errors
-    /// [`Error::Input`], [`Error::Yarn`] or [`Error::Material`] for what cannot be drawn, [`Error::Device`] for what the adapter
+    /// [`Error::Scene`] or [`Error::Input`] for what cannot be drawn, [`Error::Device`] for what the adapter
     /// cannot do, [`Error::Cancelled`].
     pub fn render(
         &self,
@@ -123,14 +123,6 @@ fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
     if !(16..=16384).contains(&settings.shadow_resolution) {
         return invalid("shadow_resolution", format!("{}: expected 16 to 16384 texels", settings.shadow_resolution));
     }
-    if !scene.ambient.is_finite() || scene.ambient.min_element() < 0.0 {
-        return invalid("ambient", format!("{}: expected finite radiances of at least 0", scene.ambient));
-    }
-    lights::validate(&scene.lights)?;
-    for object in &scene.objects {
-        let named = |source| Error::Yarn { object: object.name.clone(), source };
-        object.yarn.validate().map_err(named)?;
-        object.material.validate().map_err(|source| Error::Material { object: object.name.clone(), source })?;
-    }
+    scene.validate()?;
     Ok(region)
 }

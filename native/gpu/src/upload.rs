@@ -242,9 +242,6 @@ impl SceneBuffers {
             let render_from_object =
                 DMat4::from_translation(-origin) * object.world_from_object * DMat4::from_translation(upload.center);
             let determinant = render_from_object.determinant();
-            if !render_from_object.is_finite() || determinant == 0.0 {
-                return Err(invalid_transform(object));
-            }
             let scale = determinant.abs().cbrt();
             let row = |i: usize| -> Vec4 { render_from_object.row(i).as_vec4() };
             let count = upload.knots.len() as u32;
@@ -280,11 +277,4 @@ impl SceneBuffers {
 fn position<T: PartialEq>(list: &[Arc<T>], item: &Arc<T>) -> u32 {
     let found = list.iter().position(|known| Arc::ptr_eq(known, item) || **known == **item);
     found.expect("every object's yarn and material was interned") as u32
-}
-
-fn invalid_transform(object: &Object) -> Error {
-    Error::input(
-        format!("object \"{}\"", object.name),
-        "its transform is not finite, or has a scale of zero along an axis",
-    )
 }

@@ -1,6 +1,4 @@
-use lisle_core::scattering::MaterialError;
 use lisle_core::scene::SceneError;
-use lisle_core::yarn::YarnError;
 use thiserror::Error;
 
 use crate::fibers::FibersError;
@@ -9,29 +7,13 @@ use crate::fibers::FibersError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A light or the camera.
+    /// A part of the scene cannot be drawn.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// An object's yarn is out of range.
-    #[error("object \"{object}\": {source}")]
-    Yarn {
-        /// The object's name.
-        object: String,
-        /// The parameter.
-        source: YarnError,
-    },
-    /// An object's material is out of range.
-    #[error("object \"{object}\": {source}")]
-    Material {
-        /// The object's name.
-        object: String,
-        /// The parameter.
-        source: MaterialError,
-    },
-    /// Something else in the scene or the settings.
+    /// A setting, or the environment.
     #[error("{what}: {reason}")]
     Input {
-        /// Object or setting.
+        /// Which.
         what: &'static str,
         /// What is wrong with it.
         reason: String,

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use glam::{DMat4, DVec3, Vec3};
-use lisle_core::scene::{Object, Scene, Shading, validate_lights};
+use lisle_core::scene::{Object, Scene, Shading};
 
 use crate::Error;
 use crate::assembly::Assembly;
@@ -39,12 +39,7 @@ impl World {
         chord_error: f64,
         progress: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Self, Error> {
-        validate_lights(&scene.lights)?;
-        if !scene.ambient.is_finite() || scene.ambient.min_element() < 0.0 {
-            let reason = format!("{}: expected finite radiances of at least 0", scene.ambient);
-            return Err(Error::Input { what: "ambient", reason });
-        }
-        scene.objects.iter().try_for_each(check)?;
+        scene.validate()?;
         environment.map_or(Ok(()), Environment::check)?;
         let origin = middle(&scene.objects);
         let space_from_world = DMat4::from_translation(-origin);
@@ -92,18 +87,6 @@ impl World {
     pub fn object_id(&self, segment: u32) -> u32 {
         self.object(segment).object_id
     }
-}
-
-fn check(object: &Object) -> Result<(), Error> {
-    let named = || object.name.clone();
-    object.yarn.validate().map_err(|source| Error::Yarn { object: named(), source })?;
-    object.material.validate().map_err(|source| Error::Material { object: named(), source })?;
-    let matrix = object.world_from_object;
-    if !matrix.is_finite() || matrix.determinant() == 0.0 {
-        let reason = format!("\"{}\": its transform is not finite, or has a scale of zero along an axis", object.name);
-        return Err(Error::Input { what: "object", reason });
-    }
-    Ok(())
 }
 
 /// Of the box about all knots, world space.

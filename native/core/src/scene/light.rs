@@ -53,7 +53,7 @@ pub struct Cone {
 ///
 /// # Errors
 /// [`SceneError`] for the first that cannot shine: a value that is not finite, negative or without direction.
-pub fn validate_lights(lights: &[Light]) -> Result<(), SceneError> {
+pub(super) fn validate(lights: &[Light]) -> Result<(), SceneError> {
     for (number, light) in lights.iter().enumerate() {
         let finite = |color: Vec3| color.is_finite() && color.cmpge(Vec3::ZERO).all();
         let reason = match *light {
@@ -96,7 +96,7 @@ pub fn validate_lights(lights: &[Light]) -> Result<(), SceneError> {
             }
         };
         if let Some(reason) = reason {
-            return Err(SceneError { what: format!("light {number}"), reason: reason.into() });
+            return Err(SceneError::input(format!("light {number}"), reason));
         }
     }
     Ok(())

@@ -2,16 +2,16 @@
 
 mod light;
 
-pub use light::{Cone, Light, validate_lights};
+pub use light::{Cone, Light};
 
 use std::sync::Arc;
 
 use glam::{DMat4, Vec3};
 use thiserror::Error;
 
-use crate::scattering::Material;
+use crate::scattering::{Material, MaterialError};
 use crate::strands::Yarns;
-use crate::yarn::Yarn;
+use crate::yarn::{Yarn, YarnError};
 
 /// Yarn curves at a place, with what they are made of.
 #[derive(Clone, Debug)]
@@ -64,10 +64,63 @@ pub enum Shading {
 
 /// A part of a scene that cannot be drawn.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("{what}: {reason}")]
-pub struct SceneError {
-    /// Light or camera.
-    pub what: String,
-    /// What is wrong with it.
-    pub reason: String,
+pub enum SceneError {
+    /// An object's yarn is out of range.
+    #[error("object \"{object}\": {source}")]
+    Yarn {
+        /// The object's name.
+        object: String,
+        /// The parameter.
+        source: YarnError,
+    },
+    /// An object's material is out of range.
+    #[error("object \"{object}\": {source}")]
+    Material {
+        /// The object's name.
+        object: String,
+        /// The parameter.
+        source: MaterialError,
+    },
+    /// Something else.
+    #[error("{what}: {reason}")]
+    Input {
+        /// Object, light, camera or sky.
+        what: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl SceneError {
+    pub(crate) fn input(what: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self::Input { what: what.into(), reason: reason.into() }
+    }
+}
+
+impl Object {
+    fn validate(&self) -> Result<(), SceneError> {
+        let object = || self.name.clone();
+        self.yarn.validate().map_err(|source| SceneError::Yarn { object: object(), source })?;
+        self.material.validate().map_err(|source| SceneError::Material { object: object(), source })?;
+        if !self.world_from_object.is_finite() || self.world_from_object.determinant() == 0.0 {
+            let what = format!("object \"{}\"", self.name);
+            return Err(SceneError::input(what, "its transform is not finite, or has a scale of zero along an axis"));
+        }
+        Ok(())
+    }
+}
+
+impl Scene {
+    /// Checks all but the camera, which [`crate::view::View::new`] checks.
+    ///
+    /// # Errors
+    /// [`SceneError`] for the first part that cannot be drawn.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        if !self.ambient.is_finite() || self.ambient.min_element() < 0.0 {
+            let reason = format!("{}: expected finite radiances of at least 0", self.ambient);
+            return Err(SceneError::input("ambient", reason));
+        }
+        light::validate(&self.lights)?;
+        self.objects.iter().try_for_each(Object::validate)
+    }
 }
