@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use glam::{DMat2, DVec2};
+use glam::DVec2;
 use lisle_core::yarn::Yarn;
 
 use crate::profile::{PROFILE_REACH, PROFILE_SIZE, radial_profile};
@@ -15,13 +15,15 @@ pub struct SectionDensity {
     /// Distance from the centre beyond which the density is zero, in units of the outer radius.
     pub reach: f64,
     ply_distance: f64,
+    /// From the yarn's centre to each ply's.
+    ply_directions: Vec<DVec2>,
     /// Slopes at distance 1 by the twist of the plies, and of the fibers in them; signed.
     ply_slope: f64,
     fiber_slope: f64,
     /// 1/e_N and 1/e_B, in units of the outer radius.
     inverse_half_axes: DVec2,
     /// Share of a yarn's fibers that are others than the one a point lies on.
-    others: f64,
+    pub(crate) others: f64,
     /// Fibers per area of the section, at even steps of the squared relative distance from the ply centre.
     profile: Vec<f64>,
 }
@@ -38,6 +40,9 @@ impl SectionDensity {
             fiber_radius: yarn.fiber_radius / outer,
             reach: ply_distance + PROFILE_REACH * half_axes.max_element(),
             ply_distance,
+            ply_directions: (0..yarn.plies)
+                .map(|ply| DVec2::from_angle(TAU * f64::from(ply) / f64::from(yarn.plies)))
+                .collect(),
             ply_slope: if yarn.plies > 1 { TAU * outer / yarn.ply_twist } else { 0.0 },
             fiber_slope: TAU * outer / yarn.fiber_twist,
             inverse_half_axes: half_axes.recip(),
@@ -60,14 +65,13 @@ impl SectionDensity {
         self.plies_at(q).map(stretched).sum::<f64>() * (2.0 * self.fiber_radius * self.others)
     }
 
-    /// Each ply's fibers per unit area at q and their lateral slope (in the ply's own axes: radial, tangential).
-    fn plies_at(&self, q: DVec2) -> impl Iterator<Item = (f64, DVec2)> {
-        (0..self.plies).map(move |ply| {
-            let angle = TAU * f64::from(ply) / f64::from(self.plies);
-            let from_yarn = DMat2::from_angle(-angle) * q;
+    /// Each ply's fibers per unit area at q, and their slope: how far they move across the section per length along the yarn.
+    pub(crate) fn plies_at(&self, q: DVec2) -> impl Iterator<Item = (f64, DVec2)> {
+        self.ply_directions.iter().map(move |direction| {
+            let from_yarn = DVec2::new(direction.dot(q), direction.perp_dot(q));
             let relative = (from_yarn - DVec2::new(self.ply_distance, 0.0)) * self.inverse_half_axes;
             let slope = from_yarn.perp() * self.ply_slope + relative.perp() / self.inverse_half_axes * self.fiber_slope;
-            (self.at_squared_distance(relative.length_squared()), slope)
+            (self.at_squared_distance(relative.length_squared()), direction.rotate(slope))
         })
     }
 

@@ -11,9 +11,11 @@ mod occlusion;
 mod profile;
 mod self_shadow;
 mod tables;
+mod transport;
 
 pub use core_fiber::{CoreFiber, HOLE};
 pub use density::SectionDensity;
 pub use occlusion::Occlusion;
 pub use self_shadow::SelfShadow;
 pub use tables::Tables;
+pub use transport::{Transport, TransportSize};

@@ -10,7 +10,6 @@ mod film;
 mod light;
 mod material;
 mod path;
-mod random;
 mod render;
 mod settings;
 mod world;

@@ -7,7 +7,7 @@ use lisle_core::sampling::{basis, disc, sphere};
 use lisle_core::scene::{Cone, Light};
 
 use crate::environment::Sky;
-use crate::random::Random;
+use lisle_core::sampling::Random;
 
 /// A direction drawn towards a light.
 pub(crate) struct LightSample {

@@ -6,7 +6,7 @@ use glam::DVec3;
 use lisle_core::scattering::{FiberScattering, Material};
 use lisle_core::scene::Shading;
 
-use crate::random::Random;
+use lisle_core::sampling::Random;
 
 /// Which of the two parts scatters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

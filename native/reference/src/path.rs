@@ -14,8 +14,8 @@ use lisle_core::scattering::FiberFrame;
 
 use crate::assembly::{Hit, Ray, Surface};
 use crate::material::{Part, Scattering};
-use crate::random::Random;
 use crate::world::World;
+use lisle_core::sampling::Random;
 
 /// Scatterings before Russian roulette may end a path.
 const LEAST_BOUNCES: u32 = 3;

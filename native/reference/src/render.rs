@@ -11,9 +11,9 @@ use rayon::prelude::*;
 use crate::assembly::{Hit, Ray};
 use crate::environment::Environment;
 use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
-use crate::random::Random;
 use crate::world::World;
 use crate::{Error, Settings};
+use lisle_core::sampling::Random;
 
 /// Time between two calls of the progress callback, about.
 const BREATH: Duration = Duration::from_millis(200);

@@ -3,8 +3,10 @@
 
 mod filter;
 mod hash;
+mod random;
 mod sequence;
 
 pub use filter::PixelFilter;
 pub use hash::{hash_combine, hash_u32, normal_from_hash, unit_from_hash};
+pub use random::Random;
 pub use sequence::{basis, disc, r2, sphere};

@@ -17,6 +17,7 @@ mod lobe;
 mod longitudinal;
 mod material;
 mod multiple;
+mod photon;
 mod physical;
 mod quadrature;
 mod simple;
@@ -31,6 +32,7 @@ pub use frame::{FiberFrame, distance_inside};
 pub use longitudinal::{gaussian, gaussian_integral};
 pub use material::{MATERIAL_NAMES, Material, MaterialError};
 pub use multiple::cloth_color;
+pub use photon::PhotonScattering;
 pub use physical::{
     AmbientFactors, Normalizers, albedo, fiber_scattering, fresnel, physical_ambient, physical_reflected,
 };

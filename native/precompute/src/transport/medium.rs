@@ -1,0 +1,116 @@
+//! A yarn's fibers as a medium through which photons walk: expected numbers in place of fibers, the same all along the yarn.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+use lisle_core::sampling::Random;
+
+use crate::SectionDensity;
+
+/// Steps across the section at which the density is bounded.
+const STEPS: u32 = 256;
+
+pub(super) struct Medium {
+    density: SectionDensity,
+    /// Bounds of the extinction within the plies' circle, and of the fuzz around it, per outer radius.
+    most_inside: f64,
+    most_outside: f64,
+}
+
+/// Where a photon meets a fiber.
+pub(super) struct Collision {
+    pub q: DVec2,
+    /// The fiber's direction, a unit vector; z is the yarn's.
+    pub tangent: DVec3,
+}
+
+impl Medium {
+    pub fn new(density: SectionDensity) -> Self {
+        let mut medium = Self { density, most_inside: 0.0, most_outside: 0.0 };
+        let cell = 2.0 * medium.reach() / f64::from(STEPS);
+        for k in 0..STEPS * STEPS {
+            let at = |i: u32| (f64::from(i) + 0.5) * cell - medium.reach();
+            let q = DVec2::new(at(k % STEPS), at(k / STEPS));
+            // A fiber's projection is never wider than its length.
+            let most = medium.length_density(q) * medium.diameter();
+            // Half a cell of tolerance, since what lies between two steps counts for both.
+            if q.length() < 1.0 + cell {
+                medium.most_inside = medium.most_inside.max(most);
+            }
+            if q.length() > 1.0 - cell {
+                medium.most_outside = medium.most_outside.max(most);
+            }
+        }
+        medium.most_inside *= 1.05;
+        medium.most_outside *= 1.05;
+        medium
+    }
+
+    /// Radius that no fiber leaves, in outer radii.
+    pub fn reach(&self) -> f64 {
+        self.density.reach
+    }
+
+    /// Of a fiber, in outer radii.
+    pub fn diameter(&self) -> f64 {
+        2.0 * self.density.fiber_radius
+    }
+
+    /// Length of fibers per volume.
+    pub fn length_density(&self, q: DVec2) -> f64 {
+        self.density.plies_at(q).map(|(fibers, slope)| fibers * slope.extend(1.0).length()).sum()
+    }
+
+    /// The next fiber on the way of a photon; `None` if it leaves the yarn. By null collisions [Woodcock1965].
+    ///
+    /// `leaves_fiber`: the photon comes from a fiber. Others that contain the same place cannot be met, on average for π/4 of its radius
+    /// (see [`crate::SelfShadow`]), nor can it be itself.
+    pub fn next(&self, mut q: DVec2, direction: DVec3, leaves_fiber: bool, random: &mut Random) -> Option<Collision> {
+        let across = direction.truncate();
+        let share = if leaves_fiber { self.density.others } else { 1.0 };
+        if leaves_fiber {
+            q += across.normalize_or_zero() * (0.25 * PI * self.density.fiber_radius);
+        }
+        loop {
+            let inside = q.length_squared() < 1.0;
+            let most = if inside { self.most_inside } else { self.most_outside };
+            let step = -(1.0 - random.unit()).ln() / most.max(1e-12);
+            // The bound holds as far as the circle that it is for.
+            let border = if inside { way_to_circle(q, across, 1.0)?.1 } else { self.way_outside(q, across)? };
+            if step >= border {
+                // Just beyond it, so that rounding cannot leave the photon where it was.
+                q += across * (border * (1.0 + 1e-9) + 1e-9);
+                continue;
+            }
+            q += across * step;
+            let mut left = random.unit() * most;
+            for (fibers, slope) in self.density.plies_at(q) {
+                left -= share * fibers * self.diameter() * direction.cross(slope.extend(1.0)).length();
+                if left < 0.0 {
+                    return Some(Collision { q, tangent: slope.extend(1.0).normalize() });
+                }
+            }
+        }
+    }
+
+    /// Way from a point of the fuzz to the plies' circle or out of the yarn; `None` outside.
+    fn way_outside(&self, q: DVec2, across: DVec2) -> Option<f64> {
+        if q.length() >= self.reach() {
+            return None;
+        }
+        let out = way_to_circle(q, across, self.reach())?.1;
+        Some(match way_to_circle(q, across, 1.0) {
+            Some((enter, _)) if enter > 0.0 => enter,
+            _ => out,
+        })
+    }
+}
+
+/// Ways at which a ray across the section enters and leaves a circle about the centre.
+fn way_to_circle(q: DVec2, across: DVec2, radius: f64) -> Option<(f64, f64)> {
+    let a = across.length_squared();
+    let b = q.dot(across);
+    let root = b * b - a * (q.length_squared() - radius * radius);
+    // Along the yarn, nothing is ever left: such photons are lost, a set of measure 0.
+    (a > 1e-18 && root > 0.0).then(|| ((-b - root.sqrt()) / a, (-b + root.sqrt()) / a))
+}
