@@ -53,10 +53,10 @@ class NewMaterial:
         name="Fiber", description="What the new material scatters light like", items=FIBER_ITEMS, default=DEFAULT_FIBER
     )
 
-    def add_material(self, data, name):
-        """Gives curves a new material of the chosen presets."""
+    def add_material(self, data, name, fiber=None):
+        """Gives curves a new material of the chosen presets; `fiber` takes the place of the chosen one."""
         material = bpy.data.materials.new(name)
-        material.lisle.yarn.preset, material.lisle.fiber.preset = self.yarn, self.fiber
+        material.lisle.yarn.preset, material.lisle.fiber.preset = self.yarn, fiber or self.fiber
         data.materials.append(material)
 
 

@@ -8,6 +8,7 @@ def _add(self, _context):
     self.layout.separator()
     self.layout.operator("lisle.add_knit_swatch", icon="OUTLINER_OB_CURVES")
     self.layout.operator("lisle.add_knit_tube", icon="OUTLINER_OB_CURVES")
+    self.layout.operator("lisle.add_woven_swatch", icon="OUTLINER_OB_CURVES")
 
 
 def _import(self, _context):

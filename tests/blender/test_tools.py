@@ -46,6 +46,24 @@ def test_a_chart_and_a_material_of_ones_own(lisle):
     assert (settings.yarn.preset, settings.fiber.preset) == ("silk-1", "fleece")
 
 
+def test_a_woven_piece_is_added(lisle):
+    import bpy
+
+    bpy.ops.lisle.add_woven_swatch(
+        weave="twill-3-1", warp=9, weft=7, yarn_radius=0.002, spacing=2, use_weft_fiber=True, weft_fiber="rayon-3"
+    )
+    data = bpy.context.active_object.data
+    np.testing.assert_allclose(points_of(data), lisle.woven_swatch("twill-3-1", 9, 7, 0.002, 2.0).points, atol=1e-8)
+    assert values_of(data, "material_index").tolist() == [0] * 9 + [1] * 7
+    assert [material.lisle.fiber.preset for material in data.materials] == ["cotton-1", "rayon-3"]
+    bpy.ops.lisle.add_woven_swatch(weave="CHART", chart="ox xo", warp=3, weft=3)
+    data = bpy.context.active_object.data
+    assert len(data.materials) == 1 and "material_index" not in data.attributes
+    np.testing.assert_allclose(points_of(data), lisle.woven_swatch("plain", 3, 3).points, atol=1e-8)
+    with pytest.raises(RuntimeError, match="nothing holds it"):
+        bpy.ops.lisle.add_woven_swatch(weave="CHART", chart="xx xo")
+
+
 def test_a_chart_with_other_letters_is_refused(lisle):
     import bpy
 

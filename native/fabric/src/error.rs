@@ -57,16 +57,58 @@ pub enum Error {
         value_m: f64,
     },
     /// A surface must have a finite position and a normal wherever there is yarn.
-    #[error("course {course}, point {index}: the surface has no finite position or no normal at u = {u}, v = {v}")]
+    #[error("yarn {yarn}, point {index}: the surface has no finite position or no normal at u = {u}, v = {v}")]
     Surface {
-        /// Course of the cloth.
-        course: usize,
-        /// Control point within the course.
+        /// Curve of the cloth: the course of knitted cloth.
+        yarn: usize,
+        /// Control point within the curve.
         index: usize,
         /// Where on the surface.
         u: f64,
         /// Where on the surface.
         v: f64,
+    },
+    /// A chart of a weave is written with `x` and `o`.
+    #[error(
+        "weave row {row} (from the bottom), column {column}: '{symbol}' is neither 'x' (warp in front) nor 'o' (weft in front)"
+    )]
+    UnknownCrossing {
+        /// Row, counted from the bottom.
+        row: usize,
+        /// Column, counted from the left.
+        column: usize,
+        /// The symbol found.
+        symbol: char,
+    },
+    /// A yarn that stays on one side of all others falls off the cloth.
+    #[error("{family} yarn {index} of the weave stays on one side of all yarns that it crosses: nothing holds it")]
+    LooseYarn {
+        /// "warp" or "weft".
+        family: &'static str,
+        /// Column of a warp yarn, counted from the left; row of a weft yarn, from the bottom.
+        index: usize,
+    },
+    /// The crossings of a satin are spread by steps that meet every yarn and no neighbour.
+    #[error("there is no regular satin of {ends} yarns: take 5, or 7 or more")]
+    Satin {
+        /// Yarns of the repeat.
+        ends: usize,
+    },
+    /// Woven cloth needs yarns both ways.
+    #[error(
+        "{warp} warp and {weft} weft yarns: woven cloth needs at least one of each, and 2^32 - 1 control points at most"
+    )]
+    WovenSize {
+        /// Warp yarns asked for.
+        warp: usize,
+        /// Weft yarns asked for.
+        weft: usize,
+    },
+    /// Yarns that pass between each other need room.
+    #[error("spacing {value} yarn diameters: it must be finite and at least √3, where the yarns jam")]
+    Spacing {
+        /// The spacing given, in yarn diameters.
+        value: f64,
     },
     /// A sleeve needs a usable centre line.
     #[error("centre line, point {index}: {reason}")]

@@ -5,7 +5,7 @@ use crate::cell::{Cell, POINTS_PER_STITCH};
 use crate::distance::{Polyline, closest_approach};
 use crate::pattern::Pattern;
 use crate::relax::relax;
-use crate::surface::Surface;
+use crate::surface::{Surface, lift};
 use glam::{DVec2, DVec3};
 use lisle_core::curve::{Basis, Curves};
 use rayon::prelude::*;
@@ -138,13 +138,7 @@ impl Knit {
                 let (course, index) = (i / per_course, i % per_course);
                 let point = self.point(course, index);
                 let place = (point.truncate() - self.low) / self.extent;
-                let height_m = point.z * self.yarn_radius_m;
-                let position = surface.position(place.x, place.y) + surface.normal(place.x, place.y) * height_m;
-                if position.is_finite() {
-                    Ok(position.as_vec3().to_array())
-                } else {
-                    Err(Error::Surface { course, index, u: place.x, v: place.y })
-                }
+                lift(surface, place, point.z * self.yarn_radius_m, [course, index])
             })
             .collect()
     }

@@ -1,6 +1,6 @@
 //! Lisle: yarn makers over parametric surfaces.
 //!
-//! A [`Pattern`] of knit and purl stitches becomes a [`Knit`] cloth, whose yarns are laid on any [`Surface`]:
+//! A [`Pattern`] of knit and purl stitches becomes a [`Knit`] cloth, and a [`Weave`] a [`Woven`] one; their yarns are laid on any [`Surface`]:
 //!
 //! ```
 //! use lisle_fabric::{FlatPatch, Knit, Pattern, YARN_RADIUS_M};
@@ -20,6 +20,10 @@ mod knit_tests;
 mod pattern;
 mod relax;
 mod surface;
+mod weave;
+mod woven;
+#[cfg(test)]
+mod woven_tests;
 
 pub use cell::POINTS_PER_STITCH;
 pub use error::Error;
@@ -27,3 +31,5 @@ pub use garment::sweater;
 pub use knit::{Knit, YARN_RADIUS_M};
 pub use pattern::{Pattern, Stitch};
 pub use surface::{FlatPatch, Sleeve, Surface, Tube};
+pub use weave::Weave;
+pub use woven::{SPACING, Woven};

@@ -19,12 +19,27 @@ pub trait Surface: Sync {
     /// Unit normal, out of the front of the cloth.
     ///
     /// Unless a surface knows better, it is derived from positions up to 1e-5 outside of [0, 1]; where the
-    /// surface has no tangent plane it is NaN, which [`Knit::points_on`](crate::Knit::points_on) reports.
+    /// surface has no tangent plane it is NaN, which the cloth laid on it reports.
     fn normal(&self, u: f64, v: f64) -> DVec3 {
         const H: f64 = 1e-5;
         let along_u = self.position(u + H, v) - self.position(u - H, v);
         let along_v = self.position(u, v + H) - self.position(u, v - H);
         along_u.cross(along_v).try_normalize().unwrap_or(DVec3::NAN)
+    }
+}
+
+/// The point at a height in metres above a place (u, v) of a surface; `who` names its yarn and number in errors.
+pub(crate) fn lift(
+    surface: &impl Surface,
+    place: DVec2,
+    height_m: f64,
+    [yarn, index]: [usize; 2],
+) -> Result<[f32; 3], Error> {
+    let position = surface.position(place.x, place.y) + surface.normal(place.x, place.y) * height_m;
+    if position.is_finite() {
+        Ok(position.as_vec3().to_array())
+    } else {
+        Err(Error::Surface { yarn, index, u: place.x, v: place.y })
     }
 }
 

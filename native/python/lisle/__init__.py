@@ -12,7 +12,7 @@ Lengths are metres (or the file's unit, where it has none), right-handed, Z up; 
 from ._native import Adapter, Yarns, __version__, adapters
 from .camera import Camera
 from .errors import Cancelled, DeviceError, Error, InputError
-from .fabric import knit_sleeve, knit_swatch, knit_tube, sweater
+from .fabric import knit_sleeve, knit_swatch, knit_tube, sweater, woven_swatch
 from .image import Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
@@ -52,4 +52,5 @@ __all__ = [
     "knit_tube",
     "load",
     "sweater",
+    "woven_swatch",
 ]

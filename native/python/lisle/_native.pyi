@@ -30,6 +30,7 @@ __all__ = [
     "save_exr",
     "save_png",
     "sweater",
+    "woven_flat",
     "yarn_preset",
     "yarn_presets",
 ]
@@ -196,3 +197,4 @@ def knit_sleeve(
     yarn_radius: float,
 ) -> Yarns: ...
 def sweater(points: int) -> Yarns: ...
+def woven_flat(crossings: str, warp: int, weft: int, yarn_radius: float, spacing: float) -> Yarns: ...

@@ -1,4 +1,4 @@
-"""Knitted cloth as yarn curves, in metres, Z up."""
+"""Knitted and woven cloth as yarn curves, in metres, Z up."""
 
 from collections.abc import Sequence
 
@@ -9,6 +9,9 @@ from ._native import Yarns
 from .errors import InputError
 
 YARN_RADIUS_M = 1e-3
+
+WEAVE_SPACING = 1.75
+"""Distance of neighbouring yarns of tight woven cloth, diameters of the yarn."""
 
 
 def knit_swatch(
@@ -23,14 +26,18 @@ def knit_swatch(
         wales: columns of stitches.
         yarn_radius: m.
     """
-    return _native.knit_flat(pattern, *_counts(courses, wales), arguments.number("yarn_radius", yarn_radius))
+    return _native.knit_flat(
+        pattern, *_counts(courses=courses, wales=wales), arguments.number("yarn_radius", yarn_radius)
+    )
 
 
 def knit_tube(
     pattern: str = "stockinette", courses: int = 24, wales: int = 48, yarn_radius: float = YARN_RADIUS_M
 ) -> Yarns:
     """A tube about the Z axis, standing on z = 0; each course is a closed yarn. Arguments as of `knit_swatch`."""
-    return _native.knit_tube(pattern, *_counts(courses, wales), arguments.number("yarn_radius", yarn_radius))
+    return _native.knit_tube(
+        pattern, *_counts(courses=courses, wales=wales), arguments.number("yarn_radius", yarn_radius)
+    )
 
 
 def knit_sleeve(
@@ -56,7 +63,7 @@ def knit_sleeve(
         arguments.number("radius", radius),
         arguments.direction("seam_direction", seam_direction),
         pattern,
-        *_counts(courses, wales),
+        *_counts(courses=courses, wales=wales),
         arguments.number("yarn_radius", yarn_radius),
     )
 
@@ -68,8 +75,36 @@ def sweater(points: int = 200_000) -> Yarns:
     return _native.sweater(int(points))
 
 
-def _counts(courses: int, wales: int) -> tuple[int, int]:
-    for name, value in (("courses", courses), ("wales", wales)):
+def woven_swatch(
+    weave: str = "plain",
+    warp: int = 48,
+    weft: int = 48,
+    yarn_radius: float = YARN_RADIUS_M,
+    spacing: float = WEAVE_SPACING,
+) -> Yarns:
+    """A flat woven piece, upright, centred on the origin, its front towards −Y.
+
+    Every yarn is a curve: first the warp, which runs upwards, from left to right; then the weft, from the bottom up.
+
+    Args:
+        weave: "plain", "twill-F-B" (each warp yarn passes in front of F weft yarns and behind B), "satin-N" (behind one
+            of N), or a chart of x (warp in front) and o (weft in front) with its rows separated by spaces, the top row
+            first.
+        warp: yarns that run upwards.
+        weft: yarns that run across.
+        yarn_radius: m.
+        spacing: from yarn to yarn, in yarn diameters; at least √3, where round yarns jam.
+    """
+    return _native.woven_flat(
+        weave,
+        *_counts(warp=warp, weft=weft),
+        arguments.number("yarn_radius", yarn_radius),
+        arguments.number("spacing", spacing),
+    )
+
+
+def _counts(**counts: int) -> tuple[int, ...]:
+    for name, value in counts.items():
         if not 0 <= value < 2**32:
             raise InputError(f"{name}: {value} is not from 1 to 2³² − 1")
-    return int(courses), int(wales)
+    return tuple(int(value) for value in counts.values())

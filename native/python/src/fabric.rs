@@ -1,7 +1,7 @@
-//! Knitted cloth.
+//! Knitted and woven cloth.
 
 use glam::DVec3;
-use lisle_fabric::{FlatPatch, Knit, Pattern, Sleeve, Tube};
+use lisle_fabric::{FlatPatch, Knit, Pattern, Sleeve, Tube, Weave, Woven};
 use pyo3::prelude::*;
 
 use crate::error::Failure;
@@ -10,13 +10,45 @@ use crate::yarns::Yarns;
 
 /// A pattern by name, such as "rib-2-2", or as a chart of k and p.
 fn pattern(text: &str) -> Result<Pattern, lisle_fabric::Error> {
-    let rib = text.strip_prefix("rib-").and_then(|counts| counts.split_once('-'));
-    match (text, rib.map(|(knit, purl)| (knit.parse(), purl.parse()))) {
+    match (text, counts(text, "rib-")) {
         ("stockinette", _) => Ok(Pattern::stockinette()),
         ("garter", _) => Ok(Pattern::garter()),
-        (_, Some((Ok(knit), Ok(purl)))) => Pattern::rib(knit, purl),
+        (_, Some((knit, purl))) => Pattern::rib(knit, purl),
         _ => Pattern::from_chart(text),
     }
+}
+
+/// A weave by name, such as "twill-2-2", or as a chart of x and o.
+fn weave(text: &str) -> Result<Weave, lisle_fabric::Error> {
+    match (text, counts(text, "twill-"), text.strip_prefix("satin-").and_then(|ends| ends.parse().ok())) {
+        ("plain", ..) => Ok(Weave::plain()),
+        (_, Some((over, under)), _) => Weave::twill(over, under),
+        (_, _, Some(ends)) => Weave::satin(ends),
+        _ => Weave::from_chart(text),
+    }
+}
+
+/// The two numbers of a name such as "rib-2-2".
+fn counts(name: &str, prefix: &str) -> Option<(usize, usize)> {
+    let (first, second) = name.strip_prefix(prefix)?.split_once('-')?;
+    Some((first.parse().ok()?, second.parse().ok()?))
+}
+
+/// A woven piece on an upright patch of its own size, front towards −Y, centred on the origin.
+#[pyfunction]
+pub fn woven_flat(
+    py: Python<'_>,
+    crossings: &str,
+    warp: usize,
+    weft: usize,
+    yarn_radius: f64,
+    spacing: f64,
+) -> Result<Yarns, Failure> {
+    let curves = detached(py, || {
+        let woven = Woven::new(&weave(crossings)?, warp, weft, yarn_radius, spacing)?;
+        woven.swatch(&FlatPatch { size_m: woven.size_m() })
+    })?;
+    Yarns::at_rest(py, curves, None, None, "woven swatch".to_owned())
 }
 
 /// A flat piece on an upright patch of its own size, front towards −Y, centred on the origin.
