@@ -36,11 +36,11 @@ class LISLE_OT_add_woven_swatch(AddCloth, bpy.types.Operator):
     weft: IntProperty(name="Weft", description="Yarns that run across", min=1, soft_max=400, max=20000, default=48)
     spacing: FloatProperty(
         name="Spacing",
-        description="From yarn to yarn, in diameters of the yarn. Round yarns jam at the square root of 3",
-        min=1.7321,
-        soft_max=5,
+        description="From yarn to yarn; 1 is as tight as round yarns can be",
+        min=1,
+        soft_max=3,
         max=100,
-        default=1.75,
+        default=1.01,
         precision=3,
         step=1,
     )

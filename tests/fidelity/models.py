@@ -40,25 +40,9 @@ def knit() -> lisle.Yarns:
     return lisle.knit_swatch(courses=11, wales=6, yarn_radius=1.0)
 
 
-WEAVE_SPACING = 3.8
-WEAVE_AMPLITUDE = 1.05
-
-
 def woven() -> lisle.Yarns:
-    """Plain weave: cosines so far apart that no two yarns meet."""
-    count = int(SPAN / WEAVE_SPACING)
-    places = WEAVE_SPACING * (np.arange(count) - 0.5 * (count - 1))
-    along = places[0] + WEAVE_SPACING * (np.arange(8 * count + 1) / 8 - 0.5)
-    curves = []
-    for index, place in enumerate(places):
-        side = (-1) ** index * WEAVE_AMPLITUDE
-        # Crossings of one set lie at the places of the other.
-        wave = np.cos(np.pi * (along - places[0]) / WEAVE_SPACING)
-        across = np.full_like(along, place)
-        curves.append(np.column_stack([along, side * wave, across]))
-        curves.append(np.column_stack([across, -side * wave, along]))
-    offsets = len(along) * np.arange(len(curves) + 1)
-    return lisle.Yarns(np.concatenate(curves), offsets, yarn_radius=1.0)
+    """Plain weave; yarns are 3.8 apart."""
+    return lisle.woven_swatch("plain", 12, 12, yarn_radius=1.0, spacing=3.8 / (2 * 3**0.5))
 
 
 def glove() -> lisle.Yarns:

@@ -86,9 +86,9 @@ def test_makers_of_cloth():
     assert straight.with_points(bent.points).points.shape == straight.points.shape
     assert lisle.sweater(20_000).points.shape[0] <= 20_000
     np.testing.assert_array_equal(lisle.knit_swatch("kp pk").points, lisle.knit_swatch("KP PK").points)
-    woven = lisle.woven_swatch("twill-2-1", warp=6, weft=9, yarn_radius=0.002, spacing=2.0)
+    woven = lisle.woven_swatch("twill-2-1", warp=6, weft=9, yarn_radius=0.002, spacing=1.2)
     assert len(woven) == 15 and not woven.closed.any()
-    np.testing.assert_array_equal(woven.points, lisle.woven_swatch("oxx xxo xox", 6, 9, 0.002, 2.0).points)
+    np.testing.assert_array_equal(woven.points, lisle.woven_swatch("oxx xxo xox", 6, 9, 0.002, 1.2).points)
     upwards = np.ptp(woven.points[: woven.offsets[6]].reshape(6, -1, 3), axis=1)
     assert (upwards[:, 2] > 10 * upwards[:, 0]).all()
     for call, word in [
@@ -96,7 +96,7 @@ def test_makers_of_cloth():
         (lambda: lisle.woven_swatch("twill-2-0"), "warp yarn 0"),
         (lambda: lisle.woven_swatch("velvet"), "'v'"),
         (lambda: lisle.woven_swatch(warp=0), "0 warp"),
-        (lambda: lisle.woven_swatch(spacing=1.5), "spacing 1.5"),
+        (lambda: lisle.woven_swatch(spacing=0.9), "spacing 0.9"),
         (lambda: lisle.knit_swatch("knots"), "n"),
         (lambda: lisle.knit_swatch(courses=0), "0 courses"),
         (lambda: lisle.knit_swatch(courses=-1), "courses"),

@@ -105,9 +105,9 @@ pub enum Error {
         weft: usize,
     },
     /// Yarns that pass between each other need room.
-    #[error("spacing {value} yarn diameters: it must be finite and at least √3, where the yarns jam")]
+    #[error("spacing {value}: it must be finite and at least 1, where the yarns jam")]
     Spacing {
-        /// The spacing given, in yarn diameters.
+        /// The spacing given.
         value: f64,
     },
     /// A sleeve needs a usable centre line.

@@ -97,6 +97,14 @@ impl Weave {
         self.columns
     }
 
+    /// Which yarns the front shows: 1 for those of the warp, −1 for those of the weft, 0 for both alike. Three of four
+    /// crossings count as all.
+    #[must_use]
+    pub fn balance(&self) -> f64 {
+        let warp = self.warp_in_front.iter().filter(|&&in_front| in_front).count() as f64;
+        (4.0 * warp / self.warp_in_front.len() as f64 - 2.0).clamp(-1.0, 1.0)
+    }
+
     /// Whether the warp lies in front where any two yarns of the endless cloth cross.
     #[must_use]
     pub fn warp_is_in_front(&self, weft: usize, warp: usize) -> bool {
@@ -133,6 +141,14 @@ mod tests {
         for ends in [0, 1, 2, 3, 4, 6] {
             assert_eq!(Weave::satin(ends), Err(Error::Satin { ends }));
         }
+    }
+
+    #[test]
+    fn satins_show_their_warp() {
+        assert_eq!(Weave::plain().balance(), 0.0);
+        assert_eq!(Weave::twill(2, 2).map(|weave| weave.balance()), Ok(0.0));
+        assert_eq!(Weave::satin(5).map(|weave| weave.balance()), Ok(1.0));
+        assert_eq!(Weave::twill(1, 3).map(|weave| weave.balance()), Ok(-1.0));
     }
 
     #[test]

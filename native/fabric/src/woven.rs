@@ -9,8 +9,8 @@ use lisle_core::curve::{Basis, Curves};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Spacing of yarns that does not ask for another, in yarn diameters: nearly as tight as round yarns can be.
-pub const SPACING: f64 = 1.75;
+/// Spacing of yarns that does not ask for another, where 1 is as tight as round yarns can be.
+pub const SPACING: f64 = 1.01;
 
 /// Control points from one crossing to the next. Even, so that a yarn can begin halfway.
 const POINTS_PER_CROSSING: usize = 8;
@@ -24,8 +24,10 @@ const CLEARANCE: f64 = 1.0025;
 /// along `u`, from the bottom up. Number and order of the points depend on the cloth only, never on the surface: lay it
 /// on each frame's surface to animate it.
 ///
-/// The path of a yarn is that of [Peirce1937] for round yarns of one kind, crimped alike both ways: an arc about every yarn
-/// that it passes, and straight lines between. On a surface of the cloth's own size ([`size_m`](Self::size_m)) the centre
+/// The path of a yarn is that of [Peirce1937] for round yarns of one kind: an arc about every yarn that it passes, and
+/// straight lines between. A weave that shows as much warp as weft crimps both alike; one that shows more warp, a satin
+/// for example, lets the warp take more of the crimp, up to where warp yarns touch and cover the cloth ([`Weave::balance`]).
+/// On a surface of the cloth's own size ([`size_m`](Self::size_m)) the centre
 /// lines keep two yarn radii apart: where arcs of two yarns hook into each other with sections A = √(D² − x²) and
 /// B = √(D² − y²) about the diameter D, their squared distance is D² + 2 (A − D) (B − D).
 #[derive(Clone, Debug)]
@@ -34,11 +36,12 @@ pub struct Woven {
     warp: usize,
     weft: usize,
     yarn_radius_m: f64,
-    crimp: Crimp,
+    /// Of the warp and of the weft.
+    crimps: [Crimp; 2],
 }
 
 impl Woven {
-    /// A piece of `warp` × `weft` yarns, `spacing` yarn diameters apart both ways, [`SPACING`] for the tightest cloth.
+    /// A piece of `warp` × `weft` yarns, `spacing` times as far apart as where they jam ([`SPACING`] for tight cloth).
     ///
     /// # Errors
     /// [`Error::WovenSize`], [`Error::YarnRadius`] or [`Error::Spacing`].
@@ -53,16 +56,27 @@ impl Woven {
         if !(yarn_radius_m.is_finite() && yarn_radius_m > 0.0) {
             return Err(Error::YarnRadius { value_m: yarn_radius_m });
         }
-        if !(spacing.is_finite() && spacing >= 3.0_f64.sqrt()) {
+        if !(spacing.is_finite() && spacing >= 1.0) {
             return Err(Error::Spacing { value: spacing });
         }
-        Ok(Self { weave: weave.clone(), warp, weft, yarn_radius_m, crimp: Crimp::new(spacing) })
+        Ok(Self { weave: weave.clone(), warp, weft, yarn_radius_m, crimps: crimps(weave.balance(), spacing) })
     }
 
     /// The cloth at rest: width and height in metres. Yarns end half a spacing beyond their last crossing.
     #[must_use]
     pub fn size_m(&self) -> DVec2 {
-        DVec2::new(self.warp as f64, self.weft as f64) * (self.crimp.spacing * self.yarn_radius_m)
+        self.extent() * self.yarn_radius_m
+    }
+
+    /// The same in yarn radii.
+    fn extent(&self) -> DVec2 {
+        DVec2::new(self.warp as f64, self.weft as f64) * self.spacings()
+    }
+
+    /// From warp yarn to warp yarn, which is from crossing to crossing of the weft, and from weft to weft.
+    fn spacings(&self) -> DVec2 {
+        let [warp, weft] = &self.crimps;
+        DVec2::new(weft.spacing, warp.spacing)
     }
 
     /// Number of control points.
@@ -82,7 +96,7 @@ impl Woven {
     /// # Errors
     /// [`Error::Surface`] where the surface has no finite position or normal.
     pub fn points_on(&self, surface: &impl Surface) -> Result<Vec<[f32; 3]>, Error> {
-        let extent = DVec2::new(self.warp as f64, self.weft as f64) * self.crimp.spacing;
+        let extent = self.extent();
         let yarns: Result<Vec<Vec<[f32; 3]>>, Error> = (0..self.yarn_count())
             .into_par_iter()
             .map(|yarn| {
@@ -121,17 +135,19 @@ impl Woven {
 
     /// A control point in the plane of the cloth, in yarn radii from its lower left corner.
     fn point(&self, yarn: usize, index: usize) -> DVec3 {
-        let across = self.crimp.spacing * 0.5;
+        let is_warp = yarn < self.warp;
+        let crimp = &self.crimps[usize::from(!is_warp)];
         // Crossings are counted one up, so that the half before the first has a number too.
         let place = index + POINTS_PER_CROSSING / 2;
         let (crossing, step) = (place / POINTS_PER_CROSSING, place % POINTS_PER_CROSSING);
         let [first, second] = [crossing, crossing + 1].map(|crossing| self.side(yarn, crossing));
-        let along_height = self.crimp.point(first, second, step);
-        let along = along_height.x + (crossing as f64 - 0.5) * self.crimp.spacing;
-        if yarn < self.warp {
-            DVec3::new(across + yarn as f64 * self.crimp.spacing, along, along_height.y)
+        let path = crimp.point(first, second, step);
+        let along = path.x + (crossing as f64 - 0.5) * crimp.spacing;
+        let spacings = self.spacings();
+        if is_warp {
+            DVec3::new((yarn as f64 + 0.5) * spacings.x, along, path.y)
         } else {
-            DVec3::new(along, across + (yarn - self.warp) as f64 * self.crimp.spacing, along_height.y)
+            DVec3::new(along, ((yarn - self.warp) as f64 + 0.5) * spacings.y, path.y)
         }
     }
 
@@ -152,7 +168,9 @@ impl Woven {
 struct Crimp {
     /// From crossing to crossing.
     spacing: f64,
-    /// Distance of the centre lines at a crossing, and the radius of the arcs there.
+    /// How far from the middle of the cloth it lies at a crossing.
+    height: f64,
+    /// Radius of the arcs: the distance of the centre lines at a crossing.
     diameter: f64,
     /// Slope of the straight part.
     angle_rad: f64,
@@ -160,47 +178,55 @@ struct Crimp {
     straight: f64,
 }
 
-impl Crimp {
-    /// Arcs and lines as wide as needed for the Catmull-Rom curves through their points to keep [`CLEARANCE`].
-    fn new(spacing: f64) -> Self {
-        let touching = Self::of_diameter(spacing, 2.0);
-        Self::of_diameter(spacing, 2.0 * 2.0 * CLEARANCE / touching.closest_approach())
-    }
+/// Paths of warp and weft, as wide as needed for the Catmull-Rom curves through their points to keep [`CLEARANCE`].
+fn crimps(balance: f64, spacing: f64) -> [Crimp; 2] {
+    let of_diameter = |diameter: f64| {
+        // The warp's height is that of the weft at 0, and what lets yarns of the warp touch at 1.
+        let warp_height = 0.5 * diameter * (1.0 + balance * (3.0_f64.sqrt() - 1.0));
+        let weft_height = diameter - warp_height;
+        let jam = |height: f64| 2.0 * (diameter * diameter - height * height).sqrt();
+        // The spacing of the weft is the warp's from crossing to crossing.
+        let warp = Crimp::new(spacing * jam(weft_height), warp_height, diameter);
+        [warp, Crimp::new(spacing * jam(warp_height), weft_height, diameter)]
+    };
+    let touching = closest_at_crossings(&of_diameter(2.0));
+    of_diameter(2.0 * 2.0 * CLEARANCE / touching)
+}
 
-    fn of_diameter(spacing: f64, diameter: f64) -> Self {
-        let spacing = spacing * diameter;
-        // [Peirce1937]: spacing = straight cos θ + 2 D sin θ, height D = straight sin θ + 2 D (1 − cos θ).
-        let straight = (spacing * spacing - 3.0 * diameter * diameter).max(0.0).sqrt();
-        let angle_rad = (2.0 * diameter).atan2(straight) - diameter.atan2(spacing);
-        Self { spacing, diameter, angle_rad, straight }
-    }
-
-    /// How near two yarns come where they cross, whichever sides they are on at the crossings before and after.
-    fn closest_approach(&self) -> f64 {
-        const CHORDS: usize = 10;
-        let n = POINTS_PER_CROSSING as isize;
-        let path = |before: f64, after: f64| -> Vec<DVec2> {
+/// How near two yarns come where they cross, whichever sides they are on at the crossings before and after.
+fn closest_at_crossings([warp, weft]: &[Crimp; 2]) -> f64 {
+    const CHORDS: usize = 10;
+    let n = POINTS_PER_CROSSING as isize;
+    let paths = |crimp: &Crimp| {
+        [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[before, after]| {
             let at = |i: isize| {
-                let [first, second] = if i < 0 { [before, 1.0] } else { [1.0, after] };
-                let along = self.point(first, second, i.rem_euclid(n) as usize);
-                along + DVec2::new(if i < 0 { -self.spacing } else { 0.0 }, 0.0)
+                let (first, second, start) = if i < 0 { (before, 1.0, -crimp.spacing) } else { (1.0, after, 0.0) };
+                crimp.point(first, second, i.rem_euclid(n) as usize) + DVec2::new(start, 0.0)
             };
-            (-n..n).map(at).collect()
-        };
-        let neighbours = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
-        let paths = neighbours.map(|[before, after]| path(before, after));
-        let line = |points: Vec<DVec3>| Polyline::from_catmull_rom(&points, false, CHORDS);
-        let mut closest = f64::INFINITY;
-        for warp in &paths {
-            for weft in &paths {
-                let yarns = [
-                    line(warp.iter().map(|p| DVec3::new(0.0, p.x, p.y)).collect()),
-                    line(weft.iter().map(|p| DVec3::new(p.x, 0.0, -p.y)).collect()),
-                ];
-                closest = closest.min(closest_approach(&yarns, 2.0 * self.diameter, PI).unwrap_or(self.diameter));
-            }
+            (-n..n).map(at).collect::<Vec<_>>()
+        })
+    };
+    let line = |points: Vec<DVec3>| Polyline::from_catmull_rom(&points, false, CHORDS);
+    let weft_paths = paths(weft);
+    let mut closest = warp.diameter;
+    for over in paths(warp) {
+        let over = line(over.iter().map(|p| DVec3::new(0.0, p.x, p.y)).collect());
+        for under in &weft_paths {
+            let under = line(under.iter().map(|p| DVec3::new(p.x, 0.0, -p.y)).collect());
+            closest = closest.min(closest_approach(&[over.clone(), under], warp.diameter, PI).unwrap_or(closest));
         }
-        closest
+    }
+    closest
+}
+
+impl Crimp {
+    fn new(spacing: f64, height: f64, diameter: f64) -> Self {
+        // [Peirce1937], for arcs whose centres lie 2 (D − height) below each other: spacing = straight cos θ + 2 D sin θ and
+        // 2 height = straight sin θ + 2 D (1 − cos θ).
+        let offset = 2.0 * (diameter - height);
+        let straight = (spacing * spacing + offset * offset - 4.0 * diameter * diameter).max(0.0).sqrt();
+        let angle_rad = (2.0 * diameter).atan2(straight) - offset.atan2(spacing);
+        Self { spacing, height, diameter, angle_rad, straight }
     }
 
     /// Point `step` of [`POINTS_PER_CROSSING`], evenly spaced along the yarn from a crossing on the side `first` to one on
@@ -208,7 +234,7 @@ impl Crimp {
     fn point(&self, first: f64, second: f64, step: usize) -> DVec2 {
         let share = step as f64 / POINTS_PER_CROSSING as f64;
         if first == second {
-            return DVec2::new(share * self.spacing, 0.5 * first * self.diameter);
+            return DVec2::new(share * self.spacing, first * self.height);
         }
         // The second half is the first one turned about its end.
         let from_end = share.min(1.0 - share);
@@ -218,7 +244,7 @@ impl Crimp {
         let beyond = (length - arc).max(0.0);
         let half = DVec2::new(
             self.diameter * angle.sin() + beyond * self.angle_rad.cos(),
-            0.5 * self.diameter - self.diameter * (1.0 - angle.cos()) - beyond * self.angle_rad.sin(),
+            self.height - self.diameter * (1.0 - angle.cos()) - beyond * self.angle_rad.sin(),
         );
         let path = if share <= 0.5 { half } else { DVec2::new(self.spacing - half.x, -half.y) };
         DVec2::new(path.x, first * path.y)

@@ -10,8 +10,8 @@ from .errors import InputError
 
 YARN_RADIUS_M = 1e-3
 
-WEAVE_SPACING = 1.75
-"""Distance of neighbouring yarns of tight woven cloth, diameters of the yarn."""
+WEAVE_SPACING = 1.01
+"""Spacing of tight woven cloth."""
 
 
 def knit_swatch(
@@ -84,7 +84,7 @@ def woven_swatch(
 ) -> Yarns:
     """A flat woven piece, upright, centred on the origin, its front towards −Y.
 
-    Every yarn is a curve: first the warp, which runs upwards, from left to right; then the weft, from the bottom up.
+    Each yarn is a curve: first the warp, which runs upwards, from left to right; then the weft, from the bottom up.
 
     Args:
         weave: "plain", "twill-F-B" (each warp yarn passes in front of F weft yarns and behind B), "satin-N" (behind one
@@ -93,7 +93,8 @@ def woven_swatch(
         warp: yarns that run upwards.
         weft: yarns that run across.
         yarn_radius: m.
-        spacing: from yarn to yarn, in yarn diameters; at least √3, where round yarns jam.
+        spacing: from yarn to yarn, at least 1, where round yarns jam: √3 diameters both ways if the weave shows as much
+            warp as weft; in satins yarns of the warp touch, and those of the weft are two diameters apart.
     """
     return _native.woven_flat(
         weave,
