@@ -40,7 +40,8 @@ struct Frame {
     origin: vec2u,
     // Threads that share a segment's cores; a power of two.
     core_parts: u32,
-    padding_2: u32,
+    // Whether light scattered more than once is added.
+    multiple: u32,
 }
 
 // One yarn object, or one instance of it.
@@ -58,10 +59,11 @@ struct Draw {
     radius_max: f32,
     // -1 if the transform mirrors, else 1.
     handedness: f32,
+    // Offset of its table of multiple scattering.
+    transport: u32,
     padding_0: u32,
     padding_1: u32,
     padding_2: u32,
-    padding_3: u32,
 }
 
 // Turns over a whole curve: whole part and rest, since the length coordinate is a 32-bit fraction of the curve's length.

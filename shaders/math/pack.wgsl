@@ -11,6 +11,12 @@ fn unpack_unit_vector(packed: u32) -> vec3f {
     return normalize(v);
 }
 
+// A colour of three mantissas of 9 bits and one exponent; native/gpu/src/tables.rs packs it.
+fn shared_exponent(word: u32) -> vec3f {
+    let mantissas = vec3f(vec3u(word, word >> 9u, word >> 18u) & vec3u(511u));
+    return mantissas * exp2(f32(word >> 27u) - 24.0);
+}
+
 // The upper 32 bits of a 32 × 32 bit product.
 fn multiply_high(a: u32, b: u32) -> u32 {
     let a_low = a & 0xffffu;

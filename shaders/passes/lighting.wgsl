@@ -131,8 +131,15 @@ fn self_occlusion(yarn: Yarn, section: SectionPoint) -> f32 {
 // Side of the shadow filter, texels: its outermost taps are weighted by the share of the texel that it covers.
 const FILTER: i32 = 3;
 
-// Share of a light that other yarns let through, filtered over the shadow map's texels.
-fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> f32 {
+// What other yarns do to a light.
+struct Shadow {
+    // Share that they let through, filtered over the shadow map's texels.
+    open: f32,
+    // Way through yarns and gaps of the light that they do not, render space.
+    way: f32,
+}
+
+fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> Shadow {
     let view = shadow_views[view_index];
     let texel = to_pixel(view.texel_from_render, position);
     let nearness = 1.0 - (texel.w - bias - view.depth_min) * view.depth_scale;
@@ -140,21 +147,24 @@ fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> f32 {
     let share = texel.xy - 0.5 * f32(FILTER - 1) - corner;
     let first = vec2i(corner);
     let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
-    var lit = 0.0;
+    var blocked = 0.0;
+    var above = 0.0;
     for (var y = 0; y < FILTER; y++) {
         for (var x = 0; x < FILTER; x++) {
             let at = first + vec2i(x, y);
-            var open = 1.0;
+            var over = 0.0;
             if all(at >= vec2i(0)) && all(at < vec2i(i32(frame.shadow_resolution))) {
                 let depth = bitcast<f32>(shadow_depths[base + u32(at.y) * frame.shadow_resolution + u32(at.x)]);
-                open = select(1.0, 0.0, depth > nearness);
+                over = max(depth - nearness, 0.0);
             }
             let weight_x = select(select(1.0, share.x, x == FILTER - 1), 1.0 - share.x, x == 0);
             let weight_y = select(select(1.0, share.y, y == FILTER - 1), 1.0 - share.y, y == 0);
-            lit += open * weight_x * weight_y;
+            blocked += select(0.0, weight_x * weight_y, over > 0.0);
+            above += weight_x * weight_y * over;
         }
     }
-    return lit / f32((FILTER - 1) * (FILTER - 1));
+    let open = 1.0 - blocked / f32((FILTER - 1) * (FILTER - 1));
+    return Shadow(open, above / (max(blocked, 1e-6) * view.depth_scale) + bias);
 }
 
 // Which face of a cube map looks along a direction: +x, -x, +y, -y, +z, -z.
@@ -172,9 +182,9 @@ fn cube_face(direction: vec3f) -> u32 {
 // A yarn's own tube must not shade it: its fibers do that in self_shadow. The point is moved out of the tube first.
 const SHADOW_BIAS: f32 = 0.5;
 
-fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -> f32 {
+fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -> Shadow {
     if light.shadow_view_count == 0u {
-        return 1.0;
+        return Shadow(1.0, 0.0);
     }
     let way_out = distance_out_of_tube(tube, position, incident.direction);
     let outside = position + incident.direction * way_out;
@@ -185,14 +195,14 @@ fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -
     return shadow_map(view, outside, SHADOW_BIAS * tube.radius);
 }
 
-// Share of the sky that other yarns leave open, by this sample's directions.
-fn sky_shadow(tube: Tube, position: vec3f) -> f32 {
-    var open = 0.0;
-    for (var i = frame.sky_view; i < frame.sky_view + frame.sky_view_count; i++) {
-        let m = shadow_views[i].texel_from_render;
-        let toward = -vec3f(m[0].w, m[1].w, m[2].w);
-        let outside = position + toward * distance_out_of_tube(tube, position, toward);
-        open += shadow_map(i, outside, SHADOW_BIAS * tube.radius);
-    }
-    return open / f32(max(frame.sky_view_count, 1u));
+// Towards the sky that a view of this sample shows.
+fn sky_direction(view_index: u32) -> vec3f {
+    let m = shadow_views[view_index].texel_from_render;
+    return -vec3f(m[0].w, m[1].w, m[2].w);
+}
+
+// Share of that sky's light that other yarns let through.
+fn sky_open(view_index: u32, direction: vec3f, tube: Tube, position: vec3f) -> f32 {
+    let outside = position + direction * distance_out_of_tube(tube, position, direction);
+    return shadow_map(view_index, outside, SHADOW_BIAS * tube.radius).open;
 }

@@ -19,12 +19,88 @@ fn fiber_normal(tangent: vec3f, side: vec3f, view: vec3f, offset: f32) -> vec3f 
     return normalize(right * x + forward * sqrt(max(1.0 - x * x, 0.0)));
 }
 
+// What a fiber makes of even light: its ambient term.
+fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
+    if frame.physical == 1u {
+        return physical_ambient(material, ambient_factors(material, sin_theta_o));
+    }
+    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0));
+}
+
+// Radiance of a fiber per irradiance, by light scattered once.
+fn reflected_once(material: Material, surface: Surface, direction: vec3f, view: vec3f) -> vec3f {
+    let angles = fiber_angles(surface.tangent, direction, view);
+    let cos_normal = dot(surface.normal, direction);
+    if frame.physical == 1u {
+        return physical_reflected(material, normalizers_at(material, angles.sin_theta_i), angles, cos_normal);
+    }
+    return simple_reflected(material, angles, cos_normal);
+}
+
+// Share of the light behind a fiber, as its TT lobe takes it in, that the yarn's own fibers let through: at two azimuths, one deviation off.
+fn self_shadow_behind(yarn: Yarn, seen: SeenPoint, gamma: f32) -> f32 {
+    let behind = -seen.section.x * seen.view.x - seen.section.y * seen.view.y;
+    let beside = seen.section.y * seen.view.x - seen.section.x * seen.view.y;
+    let off = beside * sin(gamma);
+    return 0.5 * (self_shadow(yarn, seen, behind * cos(gamma) + off) + self_shadow(yarn, seen, behind * cos(gamma) - off));
+}
+
+// The directions of this sample in which a point sees sky or other yarns.
+struct Around {
+    // Share of them that is sky.
+    open: f32,
+    // Light scattered more than once, under radiance 1 from the sky.
+    sky: vec3f,
+    // Radiance, by all orders, under radiance 1 from other yarns; and the same times each direction.
+    yarns: vec3f,
+    yarns_by_direction: mat3x3f,
+}
+
+fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, hidden: vec3f, even: vec3f) -> Around {
+    var around = Around(0.0, vec3f(0.0), vec3f(0.0), mat3x3f());
+    for (var i = frame.sky_view; i < frame.sky_view + frame.sky_view_count; i++) {
+        let direction = sky_direction(i);
+        let open = sky_open(i, direction, surface.tube, surface.position);
+        around.open += open;
+        if frame.multiple == 1u {
+            let scattered = transport_ambient(transport, seen.section, direction) * hidden;
+            around.sky += open * scattered;
+            let yarns = (1.0 - open) * (scattered + even * self_shadow(yarn, seen, direction));
+            around.yarns += yarns;
+            around.yarns_by_direction += mat3x3f(yarns * direction.x, yarns * direction.y, yarns * direction.z);
+        }
+    }
+    let share = 1.0 / f32(max(frame.sky_view_count, 1u));
+    return Around(around.open * share, around.sky * share, around.yarns * share, around.yarns_by_direction * share);
+}
+
+// Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
+const CLOTH_OPEN: f32 = 0.5;
+
 fn shade(draw: u32, surface: Surface) -> vec3f {
     let yarn = yarns[draws[draw].yarn];
     let material = materials[draws[draw].material];
     let view = direction_to_viewer(frame.viewer, surface.position);
     let section = section_point(surface.tube.center, surface.tube.radius, surface.radial, surface.tangential, surface.position);
     let seen = seen_point(yarn, section, view);
+    let even_lobes = even_light(material, dot(surface.tangent, view));
+    let even = even_lobes.around + even_lobes.through;
+    let own_sky = self_sky(yarn, seen);
+    var transport: TransportPoint;
+    var albedo: YarnAlbedo;
+    // Light that yarns lit alike send each other.
+    var gain: vec3f;
+    // Light scattered more than once comes from the directions in which fibers are. A point that is seen has fewer of them than others there,
+    // but as many behind, where light comes from that goes straight on.
+    var hidden: vec3f;
+    if frame.multiple == 1u {
+        transport = transport_point(draws[draw].transport, section, view);
+        albedo = yarn_albedo(draws[draw].transport);
+        let around_it = (1.0 - own_sky) / max(1.0 - self_occlusion(yarn, section), 0.01);
+        hidden = (even_lobes.around * around_it + even_lobes.through) / max(even, vec3f(1e-6));
+        gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * (albedo.back + albedo.through));
+    }
+    let around = look_around(yarn, surface, seen, transport, hidden, even);
     var radiance = vec3f(0.0);
     for (var i = 0u; i < frame.light_count; i++) {
         let light = lights[i];
@@ -32,25 +108,29 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
         if all(incident.irradiance <= vec3f(0.0)) {
             continue;
         }
-        let open = self_shadow(yarn, seen, incident.direction) * light_shadow(light, incident, surface.tube, surface.position);
-        let angles = fiber_angles(surface.tangent, incident.direction, view);
-        let cos_normal = dot(surface.normal, incident.direction);
-        var reflected: vec3f;
-        if frame.physical == 1u {
-            reflected = physical_reflected(material, normalizers_at(material, angles.sin_theta_i), angles, cos_normal);
-        } else {
-            reflected = simple_reflected(material, angles, cos_normal);
+        let own = self_shadow(yarn, seen, incident.direction);
+        let shadow = light_shadow(light, incident, surface.tube, surface.position);
+        radiance += reflected_once(material, surface, incident.direction, view) * incident.irradiance * (own * shadow.open);
+        if frame.multiple == 1u {
+            // Light that comes through other yarns is spread over the half space of the light.
+            let yarns_above = max(shadow.way / (2.0 * surface.tube.radius), 1.0);
+            let dimmed = incident.irradiance * ((1.0 - shadow.open) * pow(albedo.through, vec3f(yarns_above)));
+            let arriving = incident.irradiance * shadow.open + dimmed;
+            radiance += transport_radiance(transport, section, incident.direction) * arriving * hidden;
+            radiance += even * dimmed * (own / PI);
+            // Neighbours have the irradiance of this yarn. A yarn's light per length, 2 r times the mean cosine π/4 of its slant, leaves it
+            // over 2 π r and all directions; more of it on the side of the light, or on the other, linearly by the cosine to the light.
+            let by_direction = around.yarns_by_direction * incident.direction;
+            let sent = (albedo.back + albedo.through) * around.yarns - 2.0 * (albedo.back - albedo.through) * by_direction;
+            radiance += max(sent, vec3f(0.0)) * arriving * gain / (4.0 * PI);
         }
-        radiance += reflected * incident.irradiance * open;
     }
-    let sin_theta_o = dot(surface.tangent, view);
-    var ambient: vec3f;
-    if frame.physical == 1u {
-        ambient = physical_ambient(material, ambient_factors(material, sin_theta_o));
-    } else {
-        ambient = simple_ambient(material, sin_theta_o);
+    let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
+    var sky = (even_lobes.around * own_sky + even_lobes.through * own_behind) * around.open;
+    if frame.multiple == 1u {
+        sky += around.sky + around.yarns * (albedo.back + albedo.through) * (CLOTH_OPEN * gain);
     }
-    return radiance + ambient * frame.ambient * self_sky(yarn, seen) * sky_shadow(surface.tube, surface.position);
+    return radiance + frame.ambient * sky;
 }
 
 // The key of a pixel taken apart.

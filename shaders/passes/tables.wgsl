@@ -1,6 +1,10 @@
 // Precomputed tables of every yarn and material, one after the other.
 @group(0) @binding(8) var<storage, read> tables: array<u32>;
 
+fn table_word(index: u32) -> u32 {
+    return tables[index];
+}
+
 fn table_value(index: u32) -> f32 {
     return bitcast<f32>(tables[index]);
 }

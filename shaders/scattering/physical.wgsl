@@ -26,8 +26,16 @@ fn physical_reflected(material: Material, normalizers: Normalizers, angles: Fibe
         + material.diffuse * (w / PI * max(cos_normal_light, 0.0));
 }
 
+// Radiance under even light: what is scattered to all sides, and what goes straight on.
+struct EvenLight {
+    around: vec3f,
+    through: vec3f,
+}
+
 // `factors`: reflect, reflect at grazing angles, transmit.
-fn physical_ambient(material: Material, factors: vec3f) -> vec3f {
-    let fiber = material.color_r * factors.x + (1.0 - material.color_r) * (factors.y + material.color_tt * factors.z);
-    return fiber * (1.0 - material.diffuse_weight) + material.diffuse * material.diffuse_weight;
+fn physical_ambient(material: Material, factors: vec3f) -> EvenLight {
+    let reflected = material.color_r * factors.x + (1.0 - material.color_r) * factors.y;
+    let transmitted = (1.0 - material.color_r) * material.color_tt * factors.z;
+    let w = material.diffuse_weight;
+    return EvenLight(reflected * (1.0 - w) + material.diffuse * w, transmitted * (1.0 - w));
 }

@@ -40,9 +40,10 @@ pub(crate) struct FrameInput<'a> {
 }
 
 impl FrameInput<'_> {
-    /// Directions of the sky per sample: few samples take more, so that a picture never hangs on one or two.
+    /// Directions per sample in which sky or other yarns are seen: few samples take more, so that a picture never hangs on one or two.
     fn sky_views(&self) -> u32 {
-        if self.scene.ambient == Vec3::ZERO { 0 } else { LEAST_SKY_VIEWS.div_ceil(self.settings.samples) }
+        let is_seen = self.scene.ambient != Vec3::ZERO || self.settings.photons() > 0;
+        if !is_seen { 0 } else { LEAST_SKY_VIEWS.div_ceil(self.settings.samples) }
     }
 }
 
@@ -252,6 +253,7 @@ impl<'a> Recorder<'a> {
                 lod_pixels: settings.lod_pixels,
                 light_count: scene.lights.len() as u32,
                 physical: u32::from(settings.shading == Shading::Physical),
+                multiple: u32::from(settings.photons() > 0),
                 occlusion_table: u32::from(settings.occlusion == Occlusion::Table),
                 ambient: scene.ambient,
                 shadow_resolution: frame.capacity.shadow_resolution,

@@ -59,7 +59,7 @@ shared! {
         padding: u32,
         origin: [u32; 2],
         core_parts: u32,
-        padding_2: u32,
+        multiple: u32,
     }
     Draw {
         render_from_object_x: Vec4,
@@ -73,10 +73,10 @@ shared! {
         seed: u32,
         radius_max: f32,
         handedness: f32,
+        transport: u32,
         padding_0: u32,
         padding_1: u32,
         padding_2: u32,
-        padding_3: u32,
     }
     Curve {
         ply_whole: u32,

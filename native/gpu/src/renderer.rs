@@ -81,7 +81,7 @@ impl Renderer {
         // A panic elsewhere leaves at worst stale buffers behind, which the update below replaces.
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let State { tables, scene: kept_scene, frame: kept_frame } = &mut *state;
-        let (buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, tables)?;
+        let (buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, settings.photons(), tables)?;
         let draws = buffers.draws(scene, &which, view.origin)?;
         let input = FrameInput { scene, settings, view: &view, draws: &draws, buffers: &buffers };
         let frame = FrameBuffers::fit(&self.gpu, kept_frame.take(), &input, region)?;

@@ -23,6 +23,8 @@ pub struct Settings {
     pub samples: u32,
     /// Shading model.
     pub shading: Shading,
+    /// Photons by which light scattered more than once is precomputed for each yarn and material, with physical shading; 0 leaves it out.
+    pub transport_photons: u32,
     /// Occlusion method.
     pub occlusion: Occlusion,
     /// Fibers thinner than this many pixels are merged, omega_LoD of [WuYuksel2018 Eq. 4]; 0 draws every fiber.
@@ -37,6 +39,13 @@ pub struct Settings {
     pub seed: u32,
 }
 
+impl Settings {
+    /// Photons that are used.
+    pub(crate) fn photons(&self) -> u32 {
+        if self.shading == Shading::Physical { self.transport_photons } else { 0 }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {
@@ -44,6 +53,7 @@ impl Default for Settings {
             region: None,
             samples: 16,
             shading: Shading::Physical,
+            transport_photons: 500_000,
             occlusion: Occlusion::Distance,
             lod_pixels: 1.0,
             transparent: true,

@@ -34,6 +34,7 @@ const SHADING: Files = files![
     "light/sample.wgsl",
     "light/self_shadow.wgsl",
     "passes/lighting.wgsl",
+    "passes/transport.wgsl",
     "passes/film.wgsl",
     "passes/shade.wgsl",
 ];

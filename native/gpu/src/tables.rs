@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec4};
 use lisle_core::scattering::{Material, ScatteringTables, highlight_scale};
 use lisle_core::yarn::{FiberTable, Variate, Yarn};
-use lisle_precompute::Tables;
+use lisle_precompute::{Tables, Transport};
 
 use crate::layout;
 
@@ -13,6 +13,21 @@ use crate::layout;
 fn pack_snorm([low, high]: [f32; 2]) -> u32 {
     let code = |value: f32| u32::from((value.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16);
     code(low) | (code(high) << 16)
+}
+
+/// A colour of values ≥ 0 in three mantissas of 9 bits and one exponent, as `shared_exponent` in `shaders/math/pack.wgsl` reads it.
+fn pack_shared_exponent(color: [f32; 3]) -> u32 {
+    const BIAS: i32 = 15;
+    const MOST: f32 = 65408.0;
+    let color = color.map(|c| c.clamp(0.0, MOST));
+    let most = color.iter().copied().fold(0.0, f32::max);
+    // The exponent with which the largest mantissa, rounded, fits into 9 bits.
+    let mut exponent = (most.max(f32::MIN_POSITIVE).log2().floor() as i32 + 1).max(-BIAS);
+    if (most / 2.0_f32.powi(exponent - 9)).round() > 511.0 {
+        exponent += 1;
+    }
+    let code = |c: f32| (c / 2.0_f32.powi(exponent - 9)).round() as u32;
+    code(color[0]) | (code(color[1]) << 9) | (code(color[2]) << 18) | (((exponent + BIAS) as u32) << 27)
 }
 
 /// One buffer of tables and the offsets into it.
@@ -108,6 +123,14 @@ impl TableBuffer {
         });
     }
 
+    /// Offset of a transport table: albedo, through, then the two tables of [`Transport`].
+    pub fn add_transport(&mut self, transport: &Transport) -> u32 {
+        let colors = [transport.albedo, transport.through].map(|color| color.as_vec3().to_array());
+        let first = self.append(colors.into_iter().flatten());
+        self.append_words(transport.radiance.iter().chain(&transport.ambient).map(|c| pack_shared_exponent(*c)));
+        first
+    }
+
     pub fn add_material(&mut self, material: &Material) {
         let tables = ScatteringTables::new(material);
         let columns = [
@@ -149,23 +172,66 @@ pub(crate) fn bound(yarn: &Yarn) -> f64 {
     (yarn.ply_distance() + ply + yarn.fiber_radius) / yarn.outer_radius()
 }
 
-/// Precomputed tables of recent yarns, so that a change of camera or material costs none of them.
+/// What was computed for the most recent keys.
+struct Recent<K, V>(Vec<(K, Arc<V>)>);
+
+impl<K, V> Default for Recent<K, V> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<K: PartialEq, V> Recent<K, V> {
+    fn get(&mut self, key: K, make: impl FnOnce(&K) -> V) -> Arc<V> {
+        const KEPT: usize = 32;
+        if let Some((_, value)) = self.0.iter().find(|(known, _)| *known == key) {
+            return Arc::clone(value);
+        }
+        let value = Arc::new(make(&key));
+        if self.0.len() == KEPT {
+            self.0.remove(0);
+        }
+        self.0.push((key, Arc::clone(&value)));
+        value
+    }
+}
+
+/// Precomputed tables of recent yarns and materials, so that a change of camera costs none of them.
 #[derive(Default)]
 pub(crate) struct TableCache {
-    entries: Vec<(Yarn, Arc<Tables>)>,
+    yarns: Recent<Yarn, Tables>,
+    transports: Recent<(Yarn, Material, u32), Transport>,
 }
 
 impl TableCache {
-    pub fn get(&mut self, yarn: &Yarn) -> Arc<Tables> {
-        const KEPT: usize = 32;
-        if let Some((_, tables)) = self.entries.iter().find(|(known, _)| known == yarn) {
-            return Arc::clone(tables);
+    pub fn yarn(&mut self, yarn: &Yarn) -> Arc<Tables> {
+        self.yarns.get(yarn.clone(), Tables::new)
+    }
+
+    pub fn transport(&mut self, yarn: &Yarn, material: &Material, photons: u32) -> Arc<Transport> {
+        let key = (yarn.clone(), *material, photons);
+        self.transports.get(key, |(yarn, material, photons)| Transport::new(yarn, material, *photons))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unpack(word: u32) -> [f32; 3] {
+        let scale = 2.0_f32.powi((word >> 27) as i32 - 24);
+        [0, 9, 18].map(|shift| ((word >> shift) & 511) as f32 * scale)
+    }
+
+    #[test]
+    fn colors_keep_nine_bits_of_their_greatest_channel() {
+        for color in
+            [[0.0; 3], [1.0, 0.5, 0.25], [0.999, 1e-3, 0.3], [511.7, 3.0, 200.0], [6e4, 1.0, 0.0], [3e-5, 2e-5, 0.0]]
+        {
+            let most = color.iter().copied().fold(2.0_f32.powi(-15), f32::max);
+            for (a, b) in color.iter().zip(unpack(pack_shared_exponent(color))) {
+                assert!((a - b).abs() <= most / 511.0, "{color:?}: {b}");
+            }
         }
-        let tables = Arc::new(Tables::new(yarn));
-        if self.entries.len() == KEPT {
-            self.entries.remove(0);
-        }
-        self.entries.push((yarn.clone(), Arc::clone(&tables)));
-        tables
     }
 }

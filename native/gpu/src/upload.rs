@@ -39,6 +39,8 @@ pub(crate) struct SceneBuffers {
     uploads: Vec<Upload>,
     kinds: Vec<Arc<Yarn>>,
     materials: Vec<Arc<Material>>,
+    /// Kinds, materials and photons of the tables of multiple scattering, and their offsets.
+    transports: Vec<(TransportKey, u32)>,
     pub positions: wgpu::Buffer,
     pub frames: wgpu::Buffer,
     pub radii: wgpu::Buffer,
@@ -48,6 +50,9 @@ pub(crate) struct SceneBuffers {
     pub tables: wgpu::Buffer,
     pub uploaded_bytes: u64,
 }
+
+/// A kind of yarn, a material, both by index, and photons.
+type TransportKey = (u32, u32, u32);
 
 /// The instances to draw.
 pub(crate) struct Draws {
@@ -127,6 +132,7 @@ impl SceneBuffers {
         gpu: &Gpu,
         previous: Option<Self>,
         scene: &Scene,
+        transport_photons: u32,
         cache: &mut TableCache,
     ) -> Result<(Self, Vec<usize>), Error> {
         let (mut kinds, mut materials) = (Vec::new(), Vec::new());
@@ -146,10 +152,25 @@ impl SceneBuffers {
             }
             None => Self::upload(gpu, &sets)?,
         };
-        if buffers.kinds != kinds || buffers.materials != materials {
+        let mut transports = Vec::new();
+        if transport_photons > 0 {
+            for object in &scene.objects {
+                let key = (position(&kinds, &object.yarn), position(&materials, &object.material), transport_photons);
+                if !transports.contains(&key) {
+                    transports.push(key);
+                }
+            }
+        }
+        let same_transports = buffers.transports.iter().map(|(key, _)| key).eq(&transports);
+        if buffers.kinds != kinds || buffers.materials != materials || !same_transports {
             let mut tables = TableBuffer::default();
-            kinds.iter().for_each(|yarn| tables.add_yarn(yarn, &cache.get(yarn)));
+            kinds.iter().for_each(|yarn| tables.add_yarn(yarn, &cache.yarn(yarn)));
             materials.iter().for_each(|material| tables.add_material(material));
+            let mut add = |key: TransportKey| {
+                let (yarn, material) = (&kinds[key.0 as usize], &materials[key.1 as usize]);
+                (key, tables.add_transport(&cache.transport(yarn, material, key.2)))
+            };
+            buffers.transports = transports.into_iter().map(&mut add).collect();
             buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = storage(gpu, "materials", &tables.materials)?;
             buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words)?;
@@ -189,6 +210,7 @@ impl SceneBuffers {
             uploads,
             kinds: Vec::new(),
             materials: Vec::new(),
+            transports: Vec::new(),
             positions: storage(gpu, "control points (positions)", &positions)?,
             frames: storage(gpu, "control points (frames)", &frames)?,
             radii: storage(gpu, "control points (radii)", &radii)?,
@@ -246,6 +268,8 @@ impl SceneBuffers {
             let row = |i: usize| -> Vec4 { render_from_object.row(i).as_vec4() };
             let count = upload.knots.len() as u32;
             let radius_max = upload.knots.radius_max * scale;
+            let (yarn, material) = (position(&self.kinds, &object.yarn), position(&self.materials, &object.material));
+            let transport = self.transports.iter().find(|(key, _)| (key.0, key.1) == (yarn, material));
             draws.items.push(layout::Draw {
                 render_from_object_x: row(0),
                 render_from_object_y: row(1),
@@ -253,8 +277,9 @@ impl SceneBuffers {
                 first_segment: draws.segment_count,
                 first_knot: upload.first_knot,
                 knot_count: count,
-                yarn: position(&self.kinds, &object.yarn),
-                material: position(&self.materials, &object.material),
+                yarn,
+                material,
+                transport: transport.map_or(0, |(_, offset)| *offset),
                 seed: hash_combine(0x00b1_ec70, object.id),
                 radius_max: radius_max as f32,
                 handedness: determinant.signum() as f32,

@@ -50,6 +50,7 @@ class Renderer:
         samples: int = 16,
         size: tuple[int, int] | None = None,
         shading: str = "physical",
+        transport_photons: int = 500_000,
         occlusion: str = "distance",
         region: tuple[int, int, int, int] | None = None,
         transparent: bool = True,
@@ -71,6 +72,8 @@ class Renderer:
             samples: jittered samples per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
+            transport_photons: photons by which light that is scattered more than once is precomputed for each yarn and
+                material, with physical shading; 0 leaves it out.
             occlusion: "distance" (cubic in the distance from the yarn's centre) or "table".
             region: part of the frame to draw, x0, y0, x1, y1 in pixels from the bottom left, x1 and y1 exclusive.
             transparent: leaves the background transparent; otherwise it is the ambient radiance.
@@ -97,6 +100,7 @@ class Renderer:
                 "region": None if region is None else arguments.from_top_left(region, size),
                 "samples": samples,
                 "shading": shading,
+                "transport_photons": transport_photons,
                 "occlusion": occlusion,
                 "transparent": transparent,
                 "lod_pixels": lod_pixels,

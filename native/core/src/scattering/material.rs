@@ -86,14 +86,11 @@ const FITS: [Row; 13] = [
     ([0.10, 0.10, 0.05], [0.88, 0.83, 0.01], [4.0, 10.0, 20.0]),
 ];
 
-/// Share of the Lambert term in the presets.
-const DIFFUSE_WEIGHT: f64 = 0.5;
-
 impl Material {
     /// The fitted material of that name ([`MATERIAL_NAMES`]), or `None`.
     ///
-    /// The fits hold R and TT only: their colour comes from many scatterings between fibers, which a direct-light
-    /// renderer leaves out. `diffuse` stands in for those: the colour of a cloth of such fibers.
+    /// The fits hold R and TT only: their colour comes from many scatterings between fibers. For the simple model, which has none,
+    /// `diffuse` stands in for those: the colour of a cloth of such fibers.
     pub fn preset(name: &str) -> Option<Self> {
         let index = MATERIAL_NAMES.iter().position(|preset| *preset == name)?;
         let (color_r, color_tt, [beta_r, beta_tt, gamma_tt]) = FITS[index];
@@ -107,7 +104,7 @@ impl Material {
             beta_tt_rad: beta_tt.to_radians(),
             gamma_tt_rad,
             diffuse,
-            diffuse_weight: DIFFUSE_WEIGHT,
+            diffuse_weight: 0.0,
             specular: color_r.min(DVec3::ONE - diffuse),
             // One lobe stands for R and TT; the wider one gives cloth its sheen. Half of it, in the half angle.
             specular_beta_rad: 0.5 * beta_tt.to_radians(),

@@ -1,14 +1,15 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::Material;
 use super::physical::fresnel;
 use crate::sampling::Random;
 
-/// How R + TT send a photon on: the model along the way of the light, for walks that start at it.
+/// How the physically based model sends a photon on: along the way of the light, for walks that start at it.
 ///
-/// The fiber's function scatters the share F + (1 − F) C_TT of the light from θ_i, with density ∝ S cos θ_o ([`super::albedo`]). The Lambert term is not part of it.
+/// S scatters the share F + (1 − F) C_TT of the light from θ_i, with density ∝ S cos θ_o ([`super::albedo`]); the Lambert term that is mixed in
+/// ([`super::physical_reflected`]) its albedo, from an even place of the width that faces the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhotonScattering {
     color_r: DVec3,
@@ -17,6 +18,8 @@ pub struct PhotonScattering {
     beta_tt_rad: f64,
     /// κ = γ_TT⁻².
     concentration: f64,
+    lambert_weight: f64,
+    lambert_albedo: DVec3,
 }
 
 impl PhotonScattering {
@@ -28,6 +31,8 @@ impl PhotonScattering {
             beta_r_rad: material.beta_r_rad,
             beta_tt_rad: material.beta_tt_rad,
             concentration: material.gamma_tt_rad.powi(-2),
+            lambert_weight: material.diffuse_weight,
+            lambert_albedo: material.diffuse,
         }
     }
 
@@ -35,6 +40,9 @@ impl PhotonScattering {
     ///
     /// Both directions point away from the fiber, in axes whose z is its tangent. The lobe is drawn by how much of the power it takes on.
     pub fn scatter(&self, wi: DVec3, power: DVec3, random: &mut Random) -> (DVec3, DVec3) {
+        if random.unit() < self.lambert_weight {
+            return (lambert(wi, random), power * self.lambert_albedo);
+        }
         let cos_theta_i = wi.truncate().length().min(1.0);
         let theta_i = wi.z.atan2(cos_theta_i);
         let f = fresnel(self.color_r, cos_theta_i);
@@ -51,10 +59,20 @@ impl PhotonScattering {
             let phi = PI + von_mises(self.concentration, random);
             (longitude(theta_i, self.beta_tt_rad, random), phi, transmitted / (1.0 - chance_r))
         };
-        let across = wi.truncate().normalize_or(glam::DVec2::X).rotate(glam::DVec2::from_angle(phi));
+        let across = wi.truncate().normalize_or(DVec2::X).rotate(DVec2::from_angle(phi));
         // The cosine is the sine of what is left to the pole, which keeps its digits.
         ((across * (FRAC_PI_2 - theta_o.abs()).sin()).extend(theta_o.sin()), power)
     }
+}
+
+/// A direction off the surface of a round fiber that light from `wi` meets evenly over its width.
+fn lambert(wi: DVec3, random: &mut Random) -> DVec3 {
+    let facing = wi.truncate().normalize_or(DVec2::X);
+    let beside = 2.0 * random.unit() - 1.0;
+    let normal = (facing * (1.0 - beside * beside).sqrt() + facing.perp() * beside).extend(0.0);
+    let (height, turn) = (random.unit().sqrt(), TAU * random.unit());
+    let across = (1.0 - height * height).sqrt();
+    normal * height + (DVec3::Z.cross(normal) * turn.cos() + DVec3::Z * turn.sin()) * across
 }
 
 /// θ_o with density ∝ g cos²θ_o: a Gaussian about −θ_i, thinned by cos² relative to about its greatest.
@@ -93,7 +111,7 @@ fn von_mises(concentration: f64, random: &mut Random) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{FiberAngles, MATERIAL_NAMES, Normalizers, albedo, fiber_scattering};
+    use super::super::{FiberAngles, MATERIAL_NAMES, Normalizers, albedo, physical_reflected};
     use super::*;
 
     /// Steps of sin θ_o, and of φ_o over a half turn: the model is even in φ.
@@ -116,8 +134,15 @@ mod tests {
                 let phi = PI * (f64::from(j) + 0.5) / 60.0;
                 let wo = DVec3::new(theta.cos() * phi.cos(), theta.cos() * phi.sin(), theta.sin());
                 let angles = FiberAngles::from_directions(DVec3::Z, wi, wo);
+                // Both signs of φ; one cosine is the solid angle's, the other that of the fiber's length.
                 let weight = 2.0 * (PI / N as f64) * (PI / 60.0) * theta.cos().powi(2);
-                shares[cell(wo)] += fiber_scattering(material, &normalizers, &angles) * weight;
+                let facing = DVec2::from_angle(phi);
+                let across_width = [-0.9, -0.7, -0.5, -0.3, -0.1, 0.1, 0.3, 0.5, 0.7, 0.9].map(|beside: f64| {
+                    let normal = facing * (1.0 - beside * beside).sqrt() + facing.perp() * beside;
+                    let cos_normal = normal.dot(wi.truncate());
+                    physical_reflected(material, &normalizers, &angles, cos_normal) / (10.0 * wi.x)
+                });
+                shares[cell(wo)] += across_width.iter().sum::<DVec3>() * weight;
             }
         }
         shares
@@ -144,15 +169,17 @@ mod tests {
 
     #[test]
     fn photons_go_where_the_model_sends_them() {
-        for name in MATERIAL_NAMES {
-            let material = Material::preset(name).expect(name);
+        let presets = MATERIAL_NAMES.map(|name| (name, Material::preset(name).expect(name)));
+        let coated = ("coated", Material { diffuse_weight: 0.7, ..presets[2].1 });
+        for (name, material) in presets.into_iter().chain([coated]) {
             for theta_i in [0.0_f64, 0.5, -1.0, 1.4] {
                 let wi = DVec3::new(theta_i.cos(), 0.0, theta_i.sin());
                 let (expected, drawn) = (expected(&material, wi), drawn(&material, wi, PHOTONS));
                 let error = worst(&expected, &drawn);
                 assert!(error < BOUND, "{name} at {theta_i}: {error}");
                 let total: DVec3 = drawn.iter().sum();
-                let albedo = albedo(&material, wi.x);
+                let w = material.diffuse_weight;
+                let albedo = albedo(&material, wi.x) * (1.0 - w) + material.diffuse * w;
                 assert!((total - albedo).abs().max_element() < BOUND, "{name} at {theta_i}: {total} of {albedo}");
             }
         }
@@ -164,6 +191,8 @@ mod tests {
         let wi = DVec3::new(0.5_f64.cos(), 0.0, 0.5_f64.sin());
         let expected = expected(&material, wi);
         let wider = Material { gamma_tt_rad: 1.3 * material.gamma_tt_rad, ..material };
+        let coated = Material { diffuse_weight: 0.3, ..material };
+        assert!(worst(&expected, &drawn(&coated, wi, PHOTONS)) > BOUND, "Lambert's term");
         assert!(worst(&expected, &drawn(&wider, wi, PHOTONS)) > BOUND, "wider TT");
         assert!(worst(&expected, &drawn(&material, wi * DVec3::new(1.0, 1.0, -1.0), PHOTONS)) > BOUND, "other cone");
     }

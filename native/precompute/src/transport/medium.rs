@@ -56,27 +56,57 @@ impl Medium {
         2.0 * self.density.fiber_radius
     }
 
-    /// Length of fibers per volume.
+    /// Length of fibers per volume, without the one that a photon comes from.
     pub fn length_density(&self, q: DVec2) -> f64 {
-        self.density.plies_at(q).map(|(fibers, slope)| fibers * slope.extend(1.0).length()).sum()
+        let length = |(fibers, slope): (f64, DVec2)| fibers * slope.extend(1.0).length();
+        self.density.others * self.density.plies_at(q).map(length).sum::<f64>()
     }
 
-    /// The next fiber on the way of a photon; `None` if it leaves the yarn. By null collisions [Woodcock1965].
-    ///
-    /// `leaves_fiber`: the photon comes from a fiber. Others that contain the same place cannot be met, on average for π/4 of its radius
-    /// (see [`crate::SelfShadow`]), nor can it be itself.
-    pub fn next(&self, mut q: DVec2, direction: DVec3, leaves_fiber: bool, random: &mut Random) -> Option<Collision> {
+    /// Each ply's fibers that a photon meets per length of its way at q, and their slope.
+    fn extinctions(&self, q: DVec2, direction: DVec3) -> impl Iterator<Item = (f64, DVec2)> {
+        let width = self.density.others * self.diameter();
+        self.density
+            .plies_at(q)
+            .map(move |(fibers, slope)| (width * fibers * direction.cross(slope.extend(1.0)).length(), slope))
+    }
+
+    /// Depth of the way of π/4 of a fiber's radius that begins at q; backwards that ends there.
+    fn depth_beside(&self, q: DVec2, direction: DVec3, backwards: bool) -> f64 {
         let across = direction.truncate();
-        let share = if leaves_fiber { self.density.others } else { 1.0 };
+        let size = across.length().max(1e-9);
+        let way = 0.25 * PI * self.density.fiber_radius;
+        let middle = q + across * (0.5 * way / size * if backwards { -1.0 } else { 1.0 });
+        // The way in space is longer than that in the section.
+        self.extinctions(middle, direction).map(|(sigma, _)| sigma).sum::<f64>() * (way / size).min(1.0)
+    }
+
+    /// The next fiber on the way of a photon, and the photon's weight there; `None` with its weight if it leaves the yarn. By null collisions
+    /// [Woodcock1965].
+    ///
+    /// A ray *from* a fiber towards the light meets none that contain its start: none within π/4 of a fiber's radius, on average ([`crate::SelfShadow`]).
+    /// A photon goes the other way. On its way from fiber a to b, the last stretch before b is free, not the first after a; one
+    /// that leaves the yarn has none. Here the first stretch is skipped, since all of it lies among fibers, and weights make up for the difference.
+    pub fn next(
+        &self,
+        from: DVec2,
+        direction: DVec3,
+        leaves_fiber: bool,
+        random: &mut Random,
+    ) -> (f64, Option<Collision>) {
+        let across = direction.truncate();
+        let (mut q, mut log_weight) = (from, 0.0);
         if leaves_fiber {
             q += across.normalize_or_zero() * (0.25 * PI * self.density.fiber_radius);
+            log_weight = -self.depth_beside(from, direction, false);
         }
         loop {
             let inside = q.length_squared() < 1.0;
             let most = if inside { self.most_inside } else { self.most_outside };
             let step = -(1.0 - random.unit()).ln() / most.max(1e-12);
             // The bound holds as far as the circle that it is for.
-            let border = if inside { way_to_circle(q, across, 1.0)?.1 } else { self.way_outside(q, across)? };
+            let border =
+                if inside { way_to_circle(q, across, 1.0).map(|(_, out)| out) } else { self.way_outside(q, across) };
+            let Some(border) = border else { return (log_weight.exp(), None) };
             if step >= border {
                 // Just beyond it, so that rounding cannot leave the photon where it was.
                 q += across * (border * (1.0 + 1e-9) + 1e-9);
@@ -84,10 +114,11 @@ impl Medium {
             }
             q += across * step;
             let mut left = random.unit() * most;
-            for (fibers, slope) in self.density.plies_at(q) {
-                left -= share * fibers * self.diameter() * direction.cross(slope.extend(1.0)).length();
+            for (sigma, slope) in self.extinctions(q, direction) {
+                left -= sigma;
                 if left < 0.0 {
-                    return Some(Collision { q, tangent: slope.extend(1.0).normalize() });
+                    let weight = (log_weight + self.depth_beside(q, direction, true)).exp();
+                    return (weight, Some(Collision { q, tangent: slope.extend(1.0).normalize() }));
                 }
             }
         }

@@ -26,7 +26,7 @@ pub struct TransportSize {
 impl TransportSize {
     /// Of every table.
     pub const ALL: Self =
-        Self { rings: 6, light_azimuths: 12, light_longitudes: 6, view_longitudes: 8, view_azimuths: 6 };
+        Self { rings: 6, light_azimuths: 24, light_longitudes: 8, view_longitudes: 12, view_azimuths: 8 };
 
     pub(super) fn outgoing(&self) -> usize {
         self.view_longitudes * self.view_azimuths
@@ -44,7 +44,8 @@ pub struct Transport {
     /// Radiance of the fibers there, by light scattered at least twice in the yarn, per irradiance of a sun on a plane that faces it:
     /// `[light longitude][light azimuth][ring][view longitude][view azimuth]`, 1/sr.
     pub radiance: Vec<[f32; 3]>,
-    /// The same under radiance 1 from all directions: `[ring][view longitude][view azimuth]`.
+    /// The same under radiance 1 from all directions, if all of them had this azimuth: `[light azimuth][ring][view longitude][view azimuth]`.
+    /// The mean over azimuths is the radiance under an even sky.
     pub ambient: Vec<[f32; 3]>,
     /// Share of the light on the yarn, from all directions, that leaves it again, and that goes on through it.
     pub albedo: DVec3,
@@ -68,32 +69,28 @@ impl Transport {
         let lengths = ring_lengths(medium, size);
         let solid_angle = (2.0 / size.view_longitudes as f64) * (PI / size.view_azimuths as f64);
         let per_ring = size.outgoing();
+        let per_longitude = size.light_azimuths * size.rings * per_ring;
         let mut radiance = Vec::with_capacity(size.cells());
-        let mut ambient = vec![DVec3::ZERO; size.rings * per_ring];
+        let mut ambient = vec![DVec3::ZERO; per_longitude];
         for (k, sum) in tally.cells.iter().enumerate() {
             let ring = k / per_ring % size.rings;
             let fibers = lengths[ring] / size.light_azimuths as f64 * medium.diameter();
             let value = if fibers > 0.0 { *sum / (fibers * solid_angle) } else { DVec3::ZERO };
             radiance.push(value.as_vec3().to_array());
-            let longitude = k / (per_ring * size.rings * size.light_azimuths);
-            let (from, to) = (theta(longitude, size), theta(longitude + 1, size));
-            // Both signs of θ_i; the azimuths are a turn.
-            let light = 2.0 * (to.sin() - from.sin()) * 2.0 * PI / size.light_azimuths as f64;
-            ambient[k % ambient_len(size)] += value * light;
+            let longitude = k / per_longitude;
+            let light = 2.0 * PI * (theta(longitude + 1, size).sin() - theta(longitude, size).sin());
+            // θ_i < 0 is the same, turned by half a turn about a line across the yarn.
+            let within = k % per_longitude;
+            let (azimuth, rest) = (within / (size.rings * per_ring), within % (size.rings * per_ring));
+            let (ring, outgoing) = (rest / per_ring, rest % per_ring);
+            let turned_azimuth = size.light_azimuths - 1 - azimuth;
+            let turned = (turned_azimuth * size.rings + ring) * per_ring + (per_ring - 1 - outgoing);
+            ambient[within] += value * light;
+            ambient[turned] += value * light;
         }
-        // θ_i < 0 is the same turned by half a turn about a line across the yarn.
-        let turned = |k: usize| {
-            let (ring, outgoing) = (k / per_ring, k % per_ring);
-            ring * per_ring + (per_ring - 1 - outgoing)
-        };
-        let ambient =
-            (0..ambient.len()).map(|k| (0.5 * (ambient[k] + ambient[turned(k)])).as_vec3().to_array()).collect();
+        let ambient = ambient.into_iter().map(|value| value.as_vec3().to_array()).collect();
         Self { radiance, ambient, albedo: tally.albedo(), through: tally.through() }
     }
-}
-
-fn ambient_len(size: TransportSize) -> usize {
-    size.rings * size.outgoing()
 }
 
 pub(super) fn theta(longitude: usize, size: TransportSize) -> f64 {
@@ -123,18 +120,27 @@ mod tests {
     use lisle_core::yarn::PRESET_NAMES;
 
     #[test]
-    fn timing() {
+    fn furnace() {
+        use crate::Occlusion;
         for name in PRESET_NAMES {
-            for m in ["cotton", "rayon-3", "silk-1"] {
-                let start = std::time::Instant::now();
-                let t = Transport::new(&Yarn::preset(name).unwrap(), &Material::preset(m).unwrap(), 20_000);
-                println!(
-                    "{name} {m}: {:?} albedo {:.3} through {:.3} ambient {:?}",
-                    start.elapsed(),
-                    t.albedo,
-                    t.through,
-                    t.ambient[4 * 48 + 4 * 6 + 3]
-                );
+            let yarn = Yarn::preset(name).expect("preset");
+            let white =
+                Material { diffuse: DVec3::ONE, diffuse_weight: 1.0, ..Material::preset("cotton").expect("preset") };
+            let t = Transport::new(&yarn, &white, 200_000);
+            let occlusion = Occlusion::new(&SectionDensity::new(&yarn));
+            for ring in 0..6 {
+                let mut sum = 0.0;
+                for az in 0..24 {
+                    for k in 0..48 {
+                        sum += f64::from(t.ambient[(az * 6 + ring) * 48 + k][0]) / 12.0 / 48.0;
+                    }
+                }
+                let r = (ring as f64 + 0.5) * 0.2;
+                let open: f64 = (0..64)
+                    .map(|k| occlusion.at(glam::DVec2::from_angle(std::f64::consts::TAU * k as f64 / 64.0) * r))
+                    .sum::<f64>()
+                    / 64.0;
+                println!("{name} ring {ring}: ms {sum:.3} open {open:.3} sum {:.3}", sum + open);
             }
         }
     }

@@ -99,8 +99,12 @@ fn follow(
     if on_yarn {
         tally.entered += power.x;
     }
+    let first_power = power.x;
     let mut scatterings = 0;
-    while let Some(Collision { q: met, tangent }) = medium.next(q, direction, scatterings > 0, random) {
+    loop {
+        let (weight, collision) = medium.next(q, direction, scatterings > 0, random);
+        power *= weight;
+        let Some(Collision { q: met, tangent }) = collision else { break };
         let frame = FiberFrame::new(tangent, tangent.any_orthonormal_vector());
         let (wo, left) = scattering.scatter(frame.local_from_world(-direction), power, random);
         (q, direction, power) = (met, frame.world_from_local(wo), left);
@@ -111,7 +115,7 @@ fn follow(
                 tally.cells[longitude * (size.cells() / size.light_longitudes) + cell] += power / cos;
             }
         }
-        let most = power.max_element() / (2.0 * reach * theta_i.cos() * share);
+        let most = power.max_element() / first_power;
         if most < LEAST_POWER {
             if random.unit() * LEAST_POWER >= most {
                 return;
