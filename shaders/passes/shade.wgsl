@@ -45,33 +45,33 @@ fn self_shadow_behind(yarn: Yarn, seen: SeenPoint, gamma: f32) -> f32 {
     return 0.5 * (self_shadow(yarn, seen, behind * cos(gamma) + off) + self_shadow(yarn, seen, behind * cos(gamma) - off));
 }
 
+// As LEAST_SKY_VIEWS of native/gpu/src/frame.rs.
+const MOST_SKY_VIEWS: u32 = 8u;
+
 // The directions of this sample in which a point sees sky or other yarns.
 struct Around {
     // Share of them that is sky.
     open: f32,
     // Light scattered more than once, under radiance 1 from the sky.
     sky: vec3f,
-    // Radiance, by all orders, under radiance 1 from other yarns; and the same times each direction.
-    yarns: vec3f,
-    yarns_by_direction: mat3x3f,
+    // Radiance, by all orders, under radiance 1 from the other yarns in each direction.
+    yarns: array<vec3f, MOST_SKY_VIEWS>,
 }
 
 fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, hidden: vec3f, even: vec3f) -> Around {
-    var around = Around(0.0, vec3f(0.0), vec3f(0.0), mat3x3f());
-    for (var i = frame.sky_view; i < frame.sky_view + frame.sky_view_count; i++) {
-        let direction = sky_direction(i);
-        let open = sky_open(i, direction, surface.tube, surface.position);
-        around.open += open;
+    var around: Around;
+    let share = 1.0 / f32(max(frame.sky_view_count, 1u));
+    for (var i = 0u; i < frame.sky_view_count; i++) {
+        let direction = sky_direction(frame.sky_view + i);
+        let open = sky_open(frame.sky_view + i, direction, surface.tube, surface.position);
+        around.open += share * open;
         if frame.multiple == 1u {
             let scattered = transport_ambient(transport, seen.section, direction) * hidden;
-            around.sky += open * scattered;
-            let yarns = (1.0 - open) * (scattered + even * self_shadow(yarn, seen, direction));
-            around.yarns += yarns;
-            around.yarns_by_direction += mat3x3f(yarns * direction.x, yarns * direction.y, yarns * direction.z);
+            around.sky += (share * open) * scattered;
+            around.yarns[i] = (share * (1.0 - open)) * (scattered + even * self_shadow(yarn, seen, direction));
         }
     }
-    let share = 1.0 / f32(max(frame.sky_view_count, 1u));
-    return Around(around.open * share, around.sky * share, around.yarns * share, around.yarns_by_direction * share);
+    return around;
 }
 
 // Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
@@ -98,7 +98,7 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
         albedo = yarn_albedo(draws[draw].transport);
         let around_it = (1.0 - own_sky) / max(1.0 - self_occlusion(yarn, section), 0.01);
         hidden = (even_lobes.around * around_it + even_lobes.through) / max(even, vec3f(1e-6));
-        gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * (albedo.back + albedo.through));
+        gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * albedo.albedo);
     }
     let around = look_around(yarn, surface, seen, transport, hidden, even);
     var radiance = vec3f(0.0);
@@ -118,17 +118,20 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
             let arriving = incident.irradiance * shadow.open + dimmed;
             radiance += transport_radiance(transport, section, incident.direction) * arriving * hidden;
             radiance += even * dimmed * (own / PI);
-            // Neighbours have the irradiance of this yarn. A yarn's light per length, 2 r times the mean cosine π/4 of its slant, leaves it
-            // over 2 π r and all directions; more of it on the side of the light, or on the other, linearly by the cosine to the light.
-            let by_direction = around.yarns_by_direction * incident.direction;
-            let sent = (albedo.back + albedo.through) * around.yarns - 2.0 * (albedo.back - albedo.through) * by_direction;
-            radiance += max(sent, vec3f(0.0)) * arriving * gain / (4.0 * PI);
+            // Neighbours have the irradiance of this yarn.
+            for (var k = 0u; k < frame.sky_view_count; k++) {
+                let cosine = -dot(sky_direction(frame.sky_view + k), incident.direction);
+                radiance += around.yarns[k] * yarn_radiance(draws[draw].transport, cosine) * arriving * gain;
+            }
         }
     }
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
     var sky = (even_lobes.around * own_sky + even_lobes.through * own_behind) * around.open;
     if frame.multiple == 1u {
-        sky += around.sky + around.yarns * (albedo.back + albedo.through) * (CLOTH_OPEN * gain);
+        sky += around.sky;
+        for (var k = 0u; k < frame.sky_view_count; k++) {
+            sky += around.yarns[k] * albedo.albedo * (CLOTH_OPEN * gain);
+        }
     }
     return radiance + frame.ambient * sky;
 }

@@ -6,6 +6,7 @@ const TRANSPORT_LIGHT_AZIMUTHS: u32 = 24u;
 const TRANSPORT_RINGS: u32 = 6u;
 const TRANSPORT_VIEW_LONGITUDES: u32 = 12u;
 const TRANSPORT_VIEW_AZIMUTHS: u32 = 8u;
+const TRANSPORT_ANGLES: u32 = 16u;
 const TRANSPORT_REACH: f32 = 1.2;
 
 const TRANSPORT_OUTGOING: u32 = TRANSPORT_VIEW_LONGITUDES * TRANSPORT_VIEW_AZIMUTHS;
@@ -55,7 +56,7 @@ fn transport_point(table: u32, section: SectionPoint, view: vec3f) -> TransportP
     let l = between((0.5 * dot(view, yarn_axis) + 0.5) * f32(TRANSPORT_VIEW_LONGITUDES), TRANSPORT_VIEW_LONGITUDES);
     let offsets = vec2u(l.first, l.second).xxyy * TRANSPORT_VIEW_AZIMUTHS + vec2u(a.first, a.second).xyxy;
     let weights = vec2f(1.0 - l.share, l.share).xxyy * vec2f(1.0 - a.share, a.share).xyxy;
-    return TransportPoint(table + 6u, azimuth, ring, offsets, weights, TRANSPORT_OUTGOING - 1u - offsets, yarn_axis);
+    return TransportPoint(table + 6u + TRANSPORT_ANGLES, azimuth, ring, offsets, weights, TRANSPORT_OUTGOING - 1u - offsets, yarn_axis);
 }
 
 fn transport_cell(first: u32, offsets: vec4u, weights: vec4f) -> vec3f {
@@ -109,14 +110,21 @@ fn transport_ambient(point: TransportPoint, section: SectionPoint, direction: ve
     return transport_side(point, point.table + TRANSPORT_LIGHT_LONGITUDES * TRANSPORT_SIDES, light, point.offsets);
 }
 
-// Share of the light on a yarn that leaves it, on the light's side and on the other.
+// Share of the light on a yarn that leaves it, and that on the side away from the light.
 struct YarnAlbedo {
-    back: vec3f,
+    albedo: vec3f,
     through: vec3f,
 }
 
 fn yarn_albedo(table: u32) -> YarnAlbedo {
     let albedo = vec3f(table_value(table), table_value(table + 1u), table_value(table + 2u));
     let through = vec3f(table_value(table + 3u), table_value(table + 4u), table_value(table + 5u));
-    return YarnAlbedo(max(albedo - through, vec3f(0.0)), through);
+    return YarnAlbedo(albedo, through);
+}
+
+// Radiance of a yarn as a whole per irradiance, by the cosine between the ways to light and viewer.
+fn yarn_radiance(table: u32, cosine: f32) -> vec3f {
+    let angle = between((0.5 * cosine + 0.5) * f32(TRANSPORT_ANGLES), TRANSPORT_ANGLES);
+    let first = table + 6u;
+    return mix(shared_exponent(table_word(first + angle.first)), shared_exponent(table_word(first + angle.second)), angle.share);
 }

@@ -123,11 +123,18 @@ impl TableBuffer {
         });
     }
 
-    /// Offset of a transport table: albedo, through, then the two tables of [`Transport`].
+    /// Offset of a transport table: albedo, through, then the three tables of [`Transport`].
     pub fn add_transport(&mut self, transport: &Transport) -> u32 {
         let colors = [transport.albedo, transport.through].map(|color| color.as_vec3().to_array());
         let first = self.append(colors.into_iter().flatten());
-        self.append_words(transport.radiance.iter().chain(&transport.ambient).map(|c| pack_shared_exponent(*c)));
+        self.append_words(
+            transport
+                .sides
+                .iter()
+                .chain(&transport.radiance)
+                .chain(&transport.ambient)
+                .map(|c| pack_shared_exponent(*c)),
+        );
         first
     }
 

@@ -21,12 +21,14 @@ pub struct TransportSize {
     pub view_longitudes: usize,
     /// Azimuth of the viewer from that of the point: even steps over [−π/2, π/2].
     pub view_azimuths: usize,
+    /// Cosine of the angle between the ways to light and viewer: even steps over [−1, 1].
+    pub sides: usize,
 }
 
 impl TransportSize {
     /// Of every table.
     pub const ALL: Self =
-        Self { rings: 6, light_azimuths: 24, light_longitudes: 8, view_longitudes: 12, view_azimuths: 8 };
+        Self { rings: 6, light_azimuths: 24, light_longitudes: 8, view_longitudes: 12, view_azimuths: 8, sides: 16 };
 
     pub(super) fn outgoing(&self) -> usize {
         self.view_longitudes * self.view_azimuths
@@ -47,6 +49,9 @@ pub struct Transport {
     /// The same under radiance 1 from all directions, if all of them had this azimuth: `[light azimuth][ring][view longitude][view azimuth]`.
     /// The mean over azimuths is the radiance under an even sky.
     pub ambient: Vec<[f32; 3]>,
+    /// Radiance of the yarn as a whole, mean over its width, by all orders, per irradiance of a sun on a plane that faces it; mean over the yarn's
+    /// directions in space: `[side]`, 1/sr.
+    pub sides: Vec<[f32; 3]>,
     /// Share of the light on the yarn, from all directions, that leaves it again, and that goes on through it.
     pub albedo: DVec3,
     /// Of the albedo, what leaves on the side away from the light.
@@ -89,7 +94,9 @@ impl Transport {
             ambient[turned] += value * light;
         }
         let ambient = ambient.into_iter().map(|value| value.as_vec3().to_array()).collect();
-        Self { radiance, ambient, albedo: tally.albedo(), through: tally.through() }
+        let side = 4.0 * PI / size.sides as f64;
+        let sides = tally.sides.iter().map(|sum| (*sum / side).as_vec3().to_array()).collect();
+        Self { radiance, ambient, sides, albedo: tally.albedo(), through: tally.through() }
     }
 }
 

@@ -23,6 +23,8 @@ const LEAST_COS: f64 = 0.02;
 pub(super) struct Tally {
     /// Power that leaves fibers over the cosine of its inclination: [`super::Transport::radiance`] before it is divided by the fibers of a cell.
     pub cells: Vec<DVec3>,
+    /// Power that leaves the yarn by the cosine of its turn, over the yarn's width seen from there.
+    pub sides: Vec<DVec3>,
     entered: f64,
     left: DVec3,
     left_forward: DVec3,
@@ -32,6 +34,7 @@ impl Tally {
     fn new() -> Self {
         Self {
             cells: vec![DVec3::ZERO; TransportSize::ALL.cells()],
+            sides: vec![DVec3::ZERO; TransportSize::ALL.sides],
             entered: 0.0,
             left: DVec3::ZERO,
             left_forward: DVec3::ZERO,
@@ -40,6 +43,7 @@ impl Tally {
 
     fn add(mut self, other: &Self) -> Self {
         self.cells.iter_mut().zip(&other.cells).for_each(|(a, b)| *a += *b);
+        self.sides.iter_mut().zip(&other.sides).for_each(|(a, b)| *a += *b);
         self.entered += other.entered;
         self.left += other.left;
         self.left_forward += other.left_forward;
@@ -124,8 +128,16 @@ fn follow(
         }
     }
     if on_yarn {
+        let toward_light = toward_light.extend(theta_i.tan()).normalize();
+        let cos = direction.truncate().length();
+        if scatterings > 0 && cos > LEAST_COS {
+            // A sun of every direction in space: those of a cell of θ_i share cos θ_i dθ_i.
+            let suns = to.sin() - from.sin();
+            let side = (0.5 * direction.dot(toward_light) + 0.5) * size.sides as f64;
+            tally.sides[(side as usize).min(size.sides - 1)] += power * (suns / (2.0 * cos));
+        }
         tally.left += power;
-        if direction.truncate().dot(toward_light) < 0.0 {
+        if direction.dot(toward_light) < 0.0 {
             tally.left_forward += power;
         }
     }
