@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.curves import CurveArrays
 from ..core.pixels import stable_id
+from . import follow
 from .curves import read_curves
 from .legacy import read_legacy
 from .lights import native_light
@@ -104,6 +105,7 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
             continue
         if obj.is_holdout:
             note(f"object '{obj.name}': holdout is not supported and ignored")
+        follow.check(obj, depsgraph)
         geometry = obj.evaluated_geometry()
         if instance.is_instance and _is_component(obj, geometry):
             continue

@@ -17,6 +17,7 @@ def _import(self, _context):
 
 def _object(self, _context):
     self.layout.separator()
+    self.layout.operator("lisle.knit_from_mesh")
     self.layout.operator("lisle.store_length_coordinate")
     self.layout.operator("lisle.fibers_to_curves")
 

@@ -109,6 +109,37 @@ def test_makers_of_cloth():
             call()
 
 
+def square(size=0.1):
+    """positions, normals, triangles, uvs of an upright square that faces −Y."""
+    positions = size * np.array([(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)], np.float32)
+    triangles = np.array([(0, 1, 2), (0, 2, 3)])
+    return positions, np.tile([0.0, -1.0, 0.0], (4, 1)), triangles, positions[triangles][:, :, ::2] / size
+
+
+def test_knit_on_a_mesh_follows_it():
+    positions, normals, triangles, uvs = square()
+    knit = lisle.knit_on_mesh(positions, normals, triangles, uvs, "garter", 0.001)
+    np.testing.assert_allclose(knit.weights.sum(axis=1), 1, atol=1e-6)
+    assert np.ptp(knit.heights) > 0.003 and knit.vertices.max() == 3
+    np.testing.assert_allclose(knit.yarns.points[:, 1], -knit.heights, atol=1e-9)
+    turn = np.array([(0, -1, 0), (1, 0, 0), (0, 0, 1)])
+    moved = knit.follow(positions @ turn.T + (1, 2, 3), normals @ turn.T)
+    np.testing.assert_allclose(moved.points, knit.yarns.points @ turn.T + (1, 2, 3), atol=1e-6)
+    np.testing.assert_array_equal(moved.length_coordinates, knit.yarns.length_coordinates)
+    twice = np.concatenate([triangles, triangles])
+    for call, word in [
+        (lambda: lisle.knit_on_mesh(positions, normals, triangles, uvs[:1]), "uvs: expected"),
+        (lambda: lisle.knit_on_mesh(positions, normals, triangles[:, :2], uvs), "triangles: expected"),
+        (lambda: lisle.knit_on_mesh(positions, normals[:2], triangles, uvs), "2 normals"),
+        (lambda: lisle.knit_on_mesh(positions, normals, triangles - 1, uvs), "out of range"),
+        (lambda: lisle.knit_on_mesh(positions, normals, twice, np.concatenate([uvs, uvs])), "overlaps"),
+        (lambda: lisle.knit_on_mesh(positions, normals, triangles, 0 * uvs), "no area"),
+        (lambda: lisle.knit_on_mesh(positions, normals, triangles, uvs, yarn_radius=0.1), "no stitch fits"),
+    ]:
+        with pytest.raises(lisle.InputError, match=word):
+            call()
+
+
 def test_one_straight_yarn_has_a_camera_too():
     camera = lisle.Camera.fit(lisle.Yarns(line(), [0, 5], yarn_radius=0.01), direction=(1, 0, 0))
     assert np.isfinite(camera.world_from_camera).all()

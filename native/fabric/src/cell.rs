@@ -30,6 +30,12 @@ impl Cell {
         self.points[row * self.row_points + index.rem_euclid(n) as usize] + DVec3::new(shift, 0.0, 0.0)
     }
 
+    /// Spacing of wales and of courses, in yarn radii.
+    pub fn spacings(&self) -> [f64; 2] {
+        let columns = self.row_points / POINTS_PER_STITCH;
+        [self.size.x / columns as f64, self.size.y / self.rows as f64]
+    }
+
     /// Loops of `wale` × `course` yarn radii with interlocking heights of `height` yarn radii.
     pub fn from_key_points(pattern: &Pattern, wale: f64, course: f64, height: f64) -> Self {
         let mut points = Vec::with_capacity(pattern.rows() * pattern.columns() * POINTS_PER_STITCH);

@@ -110,6 +110,36 @@ pub enum Error {
         /// The spacing given.
         value: f64,
     },
+    /// A mesh must be drawable.
+    #[error("the mesh cannot be knitted on: {reason}")]
+    Mesh {
+        /// What is wrong.
+        reason: String,
+    },
+    /// Each place of the UV map belongs to one place on the mesh.
+    #[error(
+        "the UV map overlaps: triangles {} and {} both cover (u, v) = ({:.4}, {:.4})", triangles[0], triangles[1], uv[0], uv[1]
+    )]
+    OverlappingUvs {
+        /// Two of the triangles, ascending.
+        triangles: [usize; 2],
+        /// A place on both.
+        uv: [f64; 2],
+    },
+    /// No run of the UV map holds a stitch.
+    #[error(
+        "no stitch fits on the mesh: it measures {width_m:.4} m × {height_m:.4} m along u and v, a stitch {wale_m:.4} m × {course_m:.4} m"
+    )]
+    NoStitches {
+        /// Mean extent of the mesh along u.
+        width_m: f64,
+        /// Mean extent of the mesh along v.
+        height_m: f64,
+        /// Width of a stitch.
+        wale_m: f64,
+        /// Height of a stitch.
+        course_m: f64,
+    },
     /// A sleeve needs a usable centre line.
     #[error("centre line, point {index}: {reason}")]
     CentreLine {

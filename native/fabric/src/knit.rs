@@ -65,18 +65,21 @@ impl Knit {
     }
 
     fn new(pattern: &Pattern, courses: usize, wales: usize, yarn_radius_m: f64, round: bool) -> Result<Self, Error> {
-        if courses == 0 || wales < if round { 3 } else { 1 } {
-            return Err(Error::EmptyCloth { courses, wales });
-        }
-        if !(yarn_radius_m.is_finite() && yarn_radius_m > 0.0) {
-            return Err(Error::YarnRadius { value_m: yarn_radius_m });
-        }
-        let points = wales.checked_mul(POINTS_PER_STITCH).and_then(|n| n.checked_add(1)?.checked_mul(courses));
-        if points.is_none_or(|points| points > u32::MAX as usize) {
-            return Err(Error::TooManyPoints { courses, wales });
-        }
-        let [wale, course, height] = FIRST_GUESS;
-        let cell = clear(relax(Cell::from_key_points(pattern, wale, course, height), LOOP_LENGTH));
+        // Before the relaxation, which takes its time.
+        check(courses, wales, yarn_radius_m, round)?;
+        Self::of_cell(relaxed(pattern), courses, wales, yarn_radius_m, round)
+    }
+
+    /// Cloth of a cell that [`relaxed`] has made, flat or in the round.
+    pub(crate) fn of_cell(
+        cell: Cell,
+        courses: usize,
+        wales: usize,
+        yarn_radius_m: f64,
+        round: bool,
+    ) -> Result<Self, Error> {
+        check(courses, wales, yarn_radius_m, round)?;
+        let columns = cell.row_points / POINTS_PER_STITCH;
         let mut knit = Self { courses, wales, round, yarn_radius_m, cell, low: DVec2::ZERO, extent: DVec2::ZERO };
         let (mut low, mut high) = (DVec2::MAX, DVec2::MIN);
         for course in 0..courses {
@@ -88,7 +91,7 @@ impl Knit {
         }
         if round {
             low.x = 0.0;
-            high.x = knit.cell.size.x * (wales / pattern.columns()) as f64;
+            high.x = knit.cell.size.x * (wales / columns) as f64;
         }
         knit.low = low;
         knit.extent = high - low;
@@ -114,10 +117,10 @@ impl Knit {
     /// two radii more.
     #[must_use]
     pub fn gauge(&self) -> [f64; 3] {
-        let columns = self.cell.row_points / POINTS_PER_STITCH;
+        let [wale, course] = self.cell.spacings();
         let heights = self.cell.points.iter().map(|point| point.z);
         let thickness = heights.clone().fold(f64::MIN, f64::max) - heights.fold(f64::MAX, f64::min);
-        [self.cell.size.x / columns as f64, self.cell.size.y / self.cell.rows as f64, thickness]
+        [wale, course, thickness]
     }
 
     /// Number of control points.
@@ -136,9 +139,8 @@ impl Knit {
             .into_par_iter()
             .map(|i| {
                 let (course, index) = (i / per_course, i % per_course);
-                let point = self.point(course, index);
-                let place = (point.truncate() - self.low) / self.extent;
-                lift(surface, place, point.z * self.yarn_radius_m, [course, index])
+                let (place, height_m) = self.place(course, index);
+                lift(surface, place, height_m, [course, index])
             })
             .collect()
     }
@@ -159,8 +161,14 @@ impl Knit {
     }
 
     /// Control points of a course. An open yarn ends where the next stitch would begin.
-    fn course_points(&self) -> usize {
+    pub(crate) fn course_points(&self) -> usize {
         self.wales * POINTS_PER_STITCH + usize::from(!self.round)
+    }
+
+    /// Where on the surface a control point lies, and its height in metres.
+    pub(crate) fn place(&self, course: usize, index: usize) -> (DVec2, f64) {
+        let point = self.point(course, index);
+        ((point.truncate() - self.low) / self.extent, point.z * self.yarn_radius_m)
     }
 
     /// A control point in the plane of the cloth, in yarn radii.
@@ -168,6 +176,26 @@ impl Knit {
         let up = self.cell.size.y * (course / self.cell.rows) as f64;
         self.cell.point(course % self.cell.rows, index as isize) + DVec3::new(0.0, up, 0.0)
     }
+}
+
+fn check(courses: usize, wales: usize, yarn_radius_m: f64, round: bool) -> Result<(), Error> {
+    if courses == 0 || wales < if round { 3 } else { 1 } {
+        return Err(Error::EmptyCloth { courses, wales });
+    }
+    if !(yarn_radius_m.is_finite() && yarn_radius_m > 0.0) {
+        return Err(Error::YarnRadius { value_m: yarn_radius_m });
+    }
+    let points = wales.checked_mul(POINTS_PER_STITCH).and_then(|n| n.checked_add(1)?.checked_mul(courses));
+    if points.is_none_or(|points| points > u32::MAX as usize) {
+        return Err(Error::TooManyPoints { courses, wales });
+    }
+    Ok(())
+}
+
+/// One repeat of a pattern as its yarn comes to rest.
+pub(crate) fn relaxed(pattern: &Pattern) -> Cell {
+    let [wale, course, height] = FIRST_GUESS;
+    clear(relax(Cell::from_key_points(pattern, wale, course, height), LOOP_LENGTH))
 }
 
 /// Scales a relaxed cell so that its centre lines come as near as [`CLEARANCE`] allows: contacts are springs, which

@@ -17,9 +17,13 @@ mod garment;
 mod knit;
 #[cfg(test)]
 mod knit_tests;
+mod mesh;
+#[cfg(test)]
+mod mesh_tests;
 mod pattern;
 mod relax;
 mod surface;
+mod uv_grid;
 mod weave;
 mod woven;
 #[cfg(test)]
@@ -29,6 +33,7 @@ pub use cell::POINTS_PER_STITCH;
 pub use error::Error;
 pub use garment::sweater;
 pub use knit::{Knit, YARN_RADIUS_M};
+pub use mesh::{MeshKnit, MeshPoint, UvMesh};
 pub use pattern::{Pattern, Stitch};
 pub use surface::{FlatPatch, Sleeve, Surface, Tube};
 pub use weave::Weave;

@@ -12,7 +12,7 @@ Lengths are metres (or the file's unit, where it has none), right-handed, Z up; 
 from ._native import Adapter, Yarns, __version__, adapters
 from .camera import Camera
 from .errors import Cancelled, DeviceError, Error, InputError
-from .fabric import knit_sleeve, knit_swatch, knit_tube, sweater, woven_swatch
+from .fabric import MeshKnit, knit_on_mesh, knit_sleeve, knit_swatch, knit_tube, sweater, woven_swatch
 from .image import Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
@@ -35,6 +35,7 @@ __all__ = [
     "InputError",
     "Light",
     "Material",
+    "MeshKnit",
     "Object",
     "Point",
     "Reference",
@@ -47,6 +48,7 @@ __all__ = [
     "__version__",
     "adapters",
     "fibers",
+    "knit_on_mesh",
     "knit_sleeve",
     "knit_swatch",
     "knit_tube",

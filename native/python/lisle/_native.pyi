@@ -21,6 +21,7 @@ __all__ = [
     "check_yarn",
     "fibers",
     "knit_flat",
+    "knit_mesh",
     "knit_sleeve",
     "knit_tube",
     "load",
@@ -196,5 +197,13 @@ def knit_sleeve(
     wales: int,
     yarn_radius: float,
 ) -> Yarns: ...
+def knit_mesh(
+    positions: npt.ArrayLike,
+    normals: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    uvs: npt.ArrayLike,
+    stitches: str,
+    yarn_radius: float,
+) -> tuple[Yarns, npt.NDArray[np.uint32], npt.NDArray[np.float32], npt.NDArray[np.float32]]: ...
 def sweater(points: int) -> Yarns: ...
 def woven_flat(crossings: str, warp: int, weft: int, yarn_radius: float, spacing: float) -> Yarns: ...

@@ -1,6 +1,10 @@
 """Knitted and woven cloth as yarn curves, in metres, Z up."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _arguments as arguments
 from . import _native
@@ -27,7 +31,7 @@ def knit_swatch(
         yarn_radius: m.
     """
     return _native.knit_flat(
-        pattern, *_counts(courses=courses, wales=wales), arguments.number("yarn_radius", yarn_radius)
+        pattern, _count("courses", courses), _count("wales", wales), arguments.number("yarn_radius", yarn_radius)
     )
 
 
@@ -36,7 +40,7 @@ def knit_tube(
 ) -> Yarns:
     """A tube about the Z axis, standing on z = 0; each course is a closed yarn. Arguments as of `knit_swatch`."""
     return _native.knit_tube(
-        pattern, *_counts(courses=courses, wales=wales), arguments.number("yarn_radius", yarn_radius)
+        pattern, _count("courses", courses), _count("wales", wales), arguments.number("yarn_radius", yarn_radius)
     )
 
 
@@ -63,9 +67,72 @@ def knit_sleeve(
         arguments.number("radius", radius),
         arguments.direction("seam_direction", seam_direction),
         pattern,
-        *_counts(courses=courses, wales=wales),
+        _count("courses", courses),
+        _count("wales", wales),
         arguments.number("yarn_radius", yarn_radius),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class MeshKnit:
+    """Knitted cloth bound to a mesh. What its n control points are bound to stays the same when the mesh moves."""
+
+    yarns: Yarns
+    """On the mesh as it was given."""
+    vertices: npt.NDArray[np.uint32]
+    """(n, 3): the mesh's vertices about each point."""
+    weights: npt.NDArray[np.float32]
+    """(n, 3): their weights, which add up to one."""
+    heights: npt.NDArray[np.float32]
+    """(n,): metres along the weighted mean of the vertices' normals."""
+
+    def follow(self, positions: npt.ArrayLike, normals: npt.ArrayLike) -> Yarns:
+        """The yarns on the moved mesh, measured at rest as before: (v, 3) vertices and their unit normals."""
+        return self.yarns.with_points(
+            self._mean(positions) + self.heights[:, None] * _unit(self._mean(normals)),
+        )
+
+    def _mean(self, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        corners: npt.NDArray[np.float64] = np.asarray(values, np.float64)[self.vertices]
+        return (self.weights[:, :, None] * corners).sum(axis=1)
+
+
+def knit_on_mesh(
+    positions: npt.ArrayLike,
+    normals: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    uvs: npt.ArrayLike,
+    pattern: str = "stockinette",
+    yarn_radius: float = YARN_RADIUS_M,
+) -> MeshKnit:
+    """Knits on a mesh with a UV map: courses run along u, wales along v, and the front faces along the normals.
+
+    As many stitches as have their natural size on average are spread evenly over the map's bounding rectangle. Courses
+    end where the map has no triangle; where its right border is the left one again, as round a sleeve, they are closed.
+
+    Args:
+        positions: (v, 3), m.
+        normals: (v, 3), unit length.
+        triangles: (t, 3), numbers of vertices.
+        uvs: (t, 3, 2), of the triangles' corners. No place of the map may be covered twice.
+        pattern: as of `knit_swatch`.
+        yarn_radius: m.
+
+    Raises:
+        InputError: the mesh or its map cannot be knitted on, or no stitch fits on it.
+    """
+    corners, map_ = np.asarray(triangles), np.asarray(uvs)
+    if corners.ndim != 2 or corners.shape[1] != 3:
+        raise InputError(f"triangles: expected shape (t, 3), got {corners.shape}")
+    if map_.shape != (*corners.shape, 2):
+        raise InputError(f"uvs: expected shape {(*corners.shape, 2)}, got {map_.shape}")
+    radius = arguments.number("yarn_radius", yarn_radius)
+    return MeshKnit(*_native.knit_mesh(positions, normals, corners.ravel(), map_.ravel(), pattern, radius))
+
+
+def _unit(vectors: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
 def sweater(points: int = 200_000) -> Yarns:
@@ -98,14 +165,14 @@ def woven_swatch(
     """
     return _native.woven_flat(
         weave,
-        *_counts(warp=warp, weft=weft),
+        _count("warp", warp),
+        _count("weft", weft),
         arguments.number("yarn_radius", yarn_radius),
         arguments.number("spacing", spacing),
     )
 
 
-def _counts(**counts: int) -> tuple[int, ...]:
-    for name, value in counts.items():
-        if not 0 <= value < 2**32:
-            raise InputError(f"{name}: {value} is not from 1 to 2³² − 1")
-    return tuple(int(value) for value in counts.values())
+def _count(name: str, value: int) -> int:
+    if not 0 <= value < 2**32:
+        raise InputError(f"{name}: {value} is not from 1 to 2³² − 1")
+    return int(value)

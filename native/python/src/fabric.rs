@@ -1,9 +1,10 @@
 //! Knitted and woven cloth.
 
-use glam::DVec3;
-use lisle_fabric::{FlatPatch, Knit, Pattern, Sleeve, Tube, Weave, Woven};
+use glam::{DVec2, DVec3};
+use lisle_fabric::{FlatPatch, Knit, MeshKnit, Pattern, Sleeve, Tube, UvMesh, Weave, Woven};
 use pyo3::prelude::*;
 
+use crate::convert::{array, integers, numbers, vectors};
 use crate::error::Failure;
 use crate::gil::detached;
 use crate::yarns::Yarns;
@@ -109,4 +110,45 @@ pub fn knit_sleeve(
 pub fn sweater(py: Python<'_>, points: usize) -> Result<Yarns, Failure> {
     let curves = detached(py, || lisle_fabric::sweater(points))?;
     Yarns::at_rest(py, curves, None, None, "knitted sweater".to_owned())
+}
+
+/// Yarns on a mesh, and what their points are bound to.
+type Bound3<'py> = (Yarns, Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+/// Cloth bound to a mesh: three numbers of `triangles` and six of `uvs` for each triangle. Vertices and weights are (n, 3),
+/// heights (n,).
+#[pyfunction]
+pub fn knit_mesh<'py>(
+    py: Python<'py>,
+    positions: &Bound<'py, PyAny>,
+    normals: &Bound<'py, PyAny>,
+    triangles: &Bound<'py, PyAny>,
+    uvs: &Bound<'py, PyAny>,
+    stitches: &str,
+    yarn_radius: f64,
+) -> Result<Bound3<'py>, Failure> {
+    let wide = |values: Vec<[f32; 3]>| values.into_iter().map(|v| DVec3::from(v.map(f64::from))).collect();
+    let uvs = numbers::<f64>("uvs", uvs)?;
+    let mesh = UvMesh {
+        positions: wide(vectors("positions", positions)?),
+        normals: wide(vectors("normals", normals)?),
+        triangles: integers::<u32>("triangles", triangles)?.as_chunks::<3>().0.to_vec(),
+        uvs: uvs
+            .as_chunks::<6>()
+            .0
+            .iter()
+            .map(|[a, b, c, d, e, f]| [[*a, *b], [*c, *d], [*e, *f]].map(DVec2::from))
+            .collect(),
+    };
+    let MeshKnit { curves, points, .. } = detached(py, || MeshKnit::new(&pattern(stitches)?, &mesh, yarn_radius))?;
+    let count = points.len();
+    let vertices: Vec<u32> = points.iter().flat_map(|point| point.vertices).collect();
+    let weights: Vec<f32> = points.iter().flat_map(|point| point.weights).collect();
+    let heights: Vec<f32> = points.iter().map(|point| point.height_m).collect();
+    Ok((
+        Yarns::at_rest(py, curves, None, None, "knitted mesh".to_owned())?,
+        array(py, vertices, &[count, 3])?,
+        array(py, weights, &[count, 3])?,
+        array(py, heights, &[count])?,
+    ))
 }

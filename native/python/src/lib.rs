@@ -31,7 +31,7 @@ mod native {
     #[pymodule_export]
     use super::exr::save_exr;
     #[pymodule_export]
-    use super::fabric::{knit_flat, knit_sleeve, knit_tube, sweater, woven_flat};
+    use super::fabric::{knit_flat, knit_mesh, knit_sleeve, knit_tube, sweater, woven_flat};
     #[pymodule_export]
     use super::load::load;
     #[pymodule_export]
