@@ -25,6 +25,7 @@ struct Segment {
     phase: f32,
     // Turns of plies, fibers and migration over the whole curve.
     turns: vec3f,
+    periods_per_turn: f32,
     closed_periods: u32,
     seed: u32,
     handedness: f32,
@@ -139,6 +140,7 @@ fn segment_between(k0: Knot, k1: Knot, k2: Knot, k3: Knot, curve: Curve, handedn
         f32(curve.fiber_whole) + curve.fiber_rest,
         f32(curve.migration_whole) + curve.migration_rest,
     );
+    s.periods_per_turn = s.turns.z / s.turns.y;
     s.closed_periods = curve.closed_periods;
     s.seed = curve.seed;
     s.handedness = handedness;

@@ -13,14 +13,17 @@ struct KeyParts {
     place: u32,
 }
 
-fn make_key(depth: f32, segment: u32, slot: u32, place: u32) -> Key {
+// The bits of a key that all pixels of a fiber or core have in one segment.
+fn key_owner(segment: u32, slot: u32) -> Key {
+    let inner_bits = frame.slot_bits + frame.place_bits;
+    return Key(segment >> (32u - inner_bits), (segment << inner_bits) | (slot << frame.place_bits));
+}
+
+fn make_key(owner: Key, depth: f32, place: u32) -> Key {
     let near_is_large = clamp(1.0 - (depth - frame.depth_min) * frame.depth_scale, 0.0, 1.0);
     // Never 0, which marks an empty pixel; in f32 only 24 bits of depth are significant.
-    let code = max(u32(near_is_large * exp2(f32(frame.depth_bits)) * 0.99999994), 1u);
-    let inner_bits = frame.slot_bits + frame.place_bits;
-    let low = (segment << inner_bits) | (slot << frame.place_bits) | place;
-    let high = (code << (32u - frame.depth_bits)) | (segment >> (32u - inner_bits));
-    return Key(high, low);
+    let code = max(u32(near_is_large * f32(1u << frame.depth_bits) * 0.99999994), 1u);
+    return Key((code << (32u - frame.depth_bits)) | owner.high, owner.low | place);
 }
 
 fn key_parts(key: Key) -> KeyParts {

@@ -27,7 +27,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let q = ply_point(yarn, s, p, ply);
     let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), index));
     let scale = scale_of(yarn, s);
-    let width = width_factor(yarn, mix_detail(scale.ends, t), index, f);
+    let width = width_factor(yarn, mix_detail(scale.ends, t), index, f.flyaway, f.taper);
     let steps = fiber_steps(yarn, s, index / CHUNK * CHUNK, scale.radius_pixels);
     let radius_pixels = max(pixels_at(f.position, yarn.fiber_radius * p.radius * width), 1e-20);
     let beside = select(vec3f(0.0), to_chord(f, t, steps), is_thin(radius_pixels));

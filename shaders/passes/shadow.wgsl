@@ -46,16 +46,17 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
             let line = make_line(
                 LineEnd(previous.xy, previous.w, previous_radius * view.texels_per_unit / previous.z),
                 LineEnd(next.xy, next.w, next_radius * view.texels_per_unit / next.z),
+                orthographic,
             );
             let walk = line_walk(line, vec2f(0.0), vec2f(size));
             for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
-                let span = line_span(line, walk, i);
+                let span = line_span(walk, i);
                 for (var j = span.x; j <= span.y; j++) {
                     let texel = select(vec2i(j, i), vec2i(i, j), walk.flat);
                     let hit = line_hit(line, vec2f(texel) + 0.5);
                     if hit.covered {
-                        let bulge = hit.bulge * mix(previous_radius, next_radius, hit.t);
-                        let depth = line_depth(line, hit.t, orthographic) - bulge;
+                        let bulge = hit.bulge / hit.radius * mix(previous_radius, next_radius, hit.t);
+                        let depth = line_depth(line, line_share(line, hit.t)) - bulge;
                         let nearness = clamp(1.0 - (depth - view.depth_min) * view.depth_scale, 0.0, 1.0);
                         // Non-negative floats order like their bits.
                         atomicMax(

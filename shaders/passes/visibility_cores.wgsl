@@ -5,10 +5,13 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
     let line = make_line(
         LineEnd(a.position, a.depth, a.half_width * yarn.core_half_width),
         LineEnd(b.position, b.depth, b.half_width * yarn.core_half_width),
+        orthographic,
     );
+    let chord = b.depth - a.depth;
+    let owner = key_owner(segment, slot);
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
     for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
-        let span = line_span(line, walk, i);
+        let span = line_span(walk, i);
         for (var j = span.x; j <= span.y; j++) {
             let pixel = select(vec2i(j, i), vec2i(i, j), walk.flat);
             let hit = core_hit(a, b, vec2f(pixel) + 0.5);
@@ -22,9 +25,9 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
                 continue;
             }
             let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
-            let behind = depth_beyond_chord(a.depth_rate * (t1 - t0), b.depth_rate * (t1 - t0), b.depth - a.depth, hit.t);
-            let depth = line_depth(line, hit.t, orthographic) + behind - nearer;
-            store_key(tile_index(pixel), make_key(depth, segment, slot, step));
+            let behind = depth_beyond_chord(a.depth_rate * (t1 - t0) - chord, b.depth_rate * (t1 - t0) - chord, hit.t);
+            let depth = line_depth(line, line_share(line, hit.t)) + behind - nearer;
+            store_key(tile_index(pixel), make_key(owner, depth, step));
         }
     }
 }

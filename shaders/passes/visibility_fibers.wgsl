@@ -6,32 +6,50 @@
 // A view ray meets the surface of a fiber that leans towards the viewer this much farther from its centre line.
 fn line_lean(line: Line, orthographic: bool) -> f32 {
     let w = select(line.a.depth, 1.0, orthographic);
-    let across = sqrt(line.length_squared) * w / frame.pixels_per_unit;
+    let across = length(line.direction) * w / frame.pixels_per_unit;
     let along = line.b.depth - line.a.depth;
     return min(sqrt(1.0 + along * along / max(across * across, 1e-30)), MOST_LEAN);
 }
 
-// `rates`: of the depth at both ends, per whole line. `thickness`: depth of the fiber relative to its width on the screen.
-fn draw_line(line: Line, rates: vec2f, thickness: f32, parts: Parts, segment: u32, slot: u32, t0: f32, t1: f32) {
-    let orthographic = frame.viewer.w > 0.5;
-    let lean = line_lean(line, orthographic);
+// A fiber between two of its ends: what its pixels share.
+struct Stroke {
+    owner: Key,
+    // Place along the segment at a, and on to b.
+    place: f32,
+    place_span: f32,
+    // Of the depth at the ends, per whole line, beside those of the chord.
+    rate_a: f32,
+    rate_b: f32,
+    // Depth that the fiber's surface is before its centre line, per pixel of bulge, at both ends.
+    bulge_a: f32,
+    bulge_b: f32,
+}
+
+fn stroke_key(line: Line, stroke: Stroke, hit: LineHit) -> Key {
+    let share = line_share(line, hit.t);
+    let behind = depth_beyond_chord(stroke.rate_a, stroke.rate_b, share);
+    let bulge = hit.bulge * mix(stroke.bulge_a, stroke.bulge_b, share);
+    let place = u32(stroke.place + share * stroke.place_span);
+    return make_key(stroke.owner, line_depth(line, share) + behind - bulge, place);
+}
+
+// One loop over columns and the pixels in them: threads that run abreast wait for the one with most pixels in all, not in each column.
+fn draw_line(line: Line, stroke: Stroke, parts: Parts) {
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
-        let span = line_span(line, walk, i);
-        for (var j = span.x; j <= span.y; j++) {
-            let pixel = select(vec2i(j, i), vec2i(i, j), walk.flat);
+    var i = first_turn(walk.first, parts);
+    var span = line_span(walk, i);
+    while i <= walk.last {
+        if span.x <= span.y {
+            let pixel = select(vec2i(span.x, i), vec2i(i, span.x), walk.flat);
             let hit = line_hit(line, vec2f(pixel) + 0.5);
             if hit.covered {
-                let depth = line_depth(line, hit.t, orthographic);
-                // Equal steps on the screen are not equal steps in depth.
-                let share = select(hit.t * depth / line.b.depth, hit.t, orthographic);
-                let place = u32(mix(t0, t1, share) * place_scale() + 0.5);
-                let behind = depth_beyond_chord(rates.x, rates.y, line.b.depth - line.a.depth, share);
-                // The fiber is round: its surface is nearer than its centre line.
-                let w = select(depth, 1.0, orthographic);
-                let bulge = hit.bulge * thickness * lean * hit.radius * w / frame.pixels_per_unit;
-                store_key(tile_index(pixel), make_key(depth + behind - bulge, segment, slot, place));
+                store_key(tile_index(pixel), stroke_key(line, stroke, hit));
             }
+        }
+        span.x++;
+        if span.x > span.y {
+            i += i32(parts.count);
+            span = line_span(walk, i);
         }
     }
 }
@@ -92,21 +110,35 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let steps = fiber_steps(yarn, s, first, scale.radius_pixels);
     let seed = ply_seed(s.seed, ply);
     let first_slot = ply * (yarn.fibers + 1u) + 1u;
-    var previous: array<FiberEnd, CHUNK>;
-    for (var step = 0u; step <= steps; step++) {
-        let t = f32(step) / f32(steps);
-        let before = f32(step) / f32(steps) - 1.0 / f32(steps);
-        let p = yarn_point(s, t);
-        let q = ply_point(yarn, s, p, ply);
-        let detail = mix_detail(scale.ends, t);
+    let orthographic = frame.viewer.w > 0.5;
+    var start = screen_ply(yarn, s, scale.ends, 0.0, ply);
+    for (var step = 1u; step <= steps; step++) {
+        let t0 = f32(step - 1u) / f32(steps);
+        let t1 = f32(step) / f32(steps);
+        let end = screen_ply(yarn, s, scale.ends, t1, ply);
         for (var index = first; index < last; index++) {
-            let a = previous[index - first];
-            let b = fiber_end(yarn, s, detail, p, q, fiber_at(yarn, seed, index));
-            previous[index - first] = b;
-            if step > 0u && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
+            // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
+            let fiber = fiber_at(yarn, seed, index);
+            let a = fiber_end(yarn, s, start, fiber);
+            let b = fiber_end(yarn, s, end, fiber);
+            if max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
                 && joined(a.piece, a.period, b.piece, b.period) {
-                draw_line(make_line(a.line, b.line), vec2f(a.depth_rate, b.depth_rate) / f32(steps), 1.0 / max(a.width, 1.0), parts, segment, first_slot + index, before, t);
+                let line = make_line(a.line, b.line, orthographic);
+                let chord = b.line.depth - a.line.depth;
+                // Of its own width, the fiber is round: where it stands for several, it is flatter.
+                let thickness = line_lean(line, orthographic) / (max(a.width, 1.0) * frame.pixels_per_unit);
+                let stroke = Stroke(
+                    key_owner(segment, first_slot + index),
+                    t0 * place_scale() + 0.5,
+                    (t1 - t0) * place_scale(),
+                    a.depth_rate / f32(steps) - chord,
+                    b.depth_rate / f32(steps) - chord,
+                    thickness * select(a.line.depth, 1.0, orthographic),
+                    thickness * select(b.line.depth, 1.0, orthographic),
+                );
+                draw_line(line, stroke, parts);
             }
         }
+        start = end;
     }
 }

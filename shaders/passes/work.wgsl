@@ -5,7 +5,7 @@
 // Segments whose work is summed up together.
 const BLOCK: u32 = 256u;
 // Fibers of a ply that one thread draws: they share the yarn's and the ply's frame.
-const CHUNK: u32 = 8u;
+const CHUNK: u32 = 16u;
 // Pixels that one thread visits, about: a software driver ends a thread after 65535 turns of its loops, and on a GPU long
 // threads make the others wait. Larger lines are shared by a power of two of threads, which take turns along them.
 const VISITS: f32 = 24000.0;

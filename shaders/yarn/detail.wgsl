@@ -31,10 +31,10 @@ fn fiber_count(yarn: Yarn, detail: Detail) -> u32 {
 }
 
 // Factor on a fiber's width. Flyaways keep their area: the core leaves out as many fibers as are astray.
-fn width_factor(yarn: Yarn, detail: Detail, index: u32, f: FiberPoint) -> f32 {
+fn width_factor(yarn: Yarn, detail: Detail, index: u32, flyaway: f32, taper: f32) -> f32 {
     let inside = clamp(detail.fibers * f32(yarn.fibers) - f32(index), 0.0, 1.0);
     let outside = clamp(detail.flyaways * f32(yarn.flyaway_fibers) - f32(index), 0.0, 1.0) / detail.flyaways;
-    return f.taper * mix(inside, outside, f.flyaway);
+    return taper * mix(inside, outside, flyaway);
 }
 
 // Chord error bound, pixels.

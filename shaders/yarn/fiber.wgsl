@@ -125,6 +125,48 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
     return profile;
 }
 
+// A fiber in the section of its ply: offsets along the ply's radial and tangential directions.
+struct FiberSection {
+    offset: vec2f,
+    // Per t, beside the turning of the ply's directions.
+    rate: vec2f,
+    // Around the ply: direction, and its angle's rate.
+    unit: vec2f,
+    angle_rate: f32,
+    phase_rate: f32,
+    profile: Profile,
+    period: u32,
+}
+
+// `period` modulo the periods of a closed curve, a few times as many at most: in floating point, since a software driver divides
+// integers one by one.
+fn wrapped_period(period: u32, closed_periods: u32) -> u32 {
+    if closed_periods == 0u {
+        return period;
+    }
+    let rest = i32(period - u32(f32(period) / f32(closed_periods)) * closed_periods);
+    return u32(select(select(rest, rest - i32(closed_periods), rest >= i32(closed_periods)), rest + i32(closed_periods), rest < 0));
+}
+
+fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
+    let position_in_migration = s.phase + p.length * s.turns.z + fiber.migration_turns;
+    let whole = floor(position_in_migration);
+    var f: FiberSection;
+    f.period = wrapped_period(s.period + u32(whole), s.closed_periods);
+    f.profile = fiber_profile(yarn, s.periods_per_turn, fiber, position_in_migration - whole, hash_combine(fiber.hash, f.period));
+    f.phase_rate = p.length_rate * s.turns.z;
+    f.unit = circle(
+        yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y + f.profile.angle_turns) + fiber.angle_turns,
+    );
+    f.angle_rate = TAU * yarn.fiber_sign * (p.length_rate * s.turns.y + f.profile.angle_rate * f.phase_rate);
+    let half_axes = vec2f(yarn.ellipse_short, yarn.ellipse_long);
+    let radius = f.profile.radius * p.radius;
+    let radius_rate = f.profile.radius * p.radius_rate + f.profile.radius_rate * f.phase_rate * p.radius;
+    f.offset = half_axes * f.unit * radius;
+    f.rate = half_axes * (vec2f(-f.unit.y, f.unit.x) * (f.angle_rate * radius) + f.unit * radius_rate);
+    return f;
+}
+
 struct FiberPoint {
     position: vec3f,
     velocity: vec3f,
@@ -132,46 +174,30 @@ struct FiberPoint {
     acceleration: vec3f,
     flyaway: f32,
     taper: f32,
-    piece: u32,
-    period: u32,
 }
 
 fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, q: PlyPoint, fiber: Fiber) -> FiberPoint {
-    let position_in_migration = s.phase + p.length * s.turns.z + fiber.migration_turns;
-    let whole = floor(position_in_migration);
-    var period = s.period + u32(whole);
-    if s.closed_periods > 0u {
-        period %= s.closed_periods;
-    }
-    let periods_per_turn = s.turns.z / s.turns.y;
-    let shape = fiber_profile(yarn, periods_per_turn, fiber, position_in_migration - whole, hash_combine(fiber.hash, period));
-    let phase_rate = p.length_rate * s.turns.z;
-
-    let unit = circle(
-        yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y + shape.angle_turns) + fiber.angle_turns,
-    );
-    let angle_rate = TAU * yarn.fiber_sign * (p.length_rate * s.turns.y + shape.angle_rate * phase_rate);
-    let spoke = q.radial * (unit.x * yarn.ellipse_short) + q.tangential * (unit.y * yarn.ellipse_long);
-    let spoke_rate = q.radial_rate * (unit.x * yarn.ellipse_short) + q.tangential_rate * (unit.y * yarn.ellipse_long)
-        + (q.tangential * (unit.x * yarn.ellipse_long) - q.radial * (unit.y * yarn.ellipse_short)) * angle_rate;
+    let at = fiber_section(yarn, s, p, fiber);
     var f: FiberPoint;
-    f.position = q.position + spoke * (shape.radius * p.radius);
-    f.velocity = q.velocity + spoke_rate * (shape.radius * p.radius)
-        + spoke * (shape.radius * p.radius_rate + shape.radius_rate * phase_rate * p.radius);
+    f.position = q.position + q.radial * at.offset.x + q.tangential * at.offset.y;
+    f.velocity = q.velocity + q.radial_rate * at.offset.x + q.tangential_rate * at.offset.y
+        + q.radial * at.rate.x + q.tangential * at.rate.y;
     // An ellipse is the sum of two circles that turn with and against the ply.
-    let with_ply = q.angle_rate + angle_rate;
-    let against = q.angle_rate - angle_rate;
+    let with_ply = q.angle_rate + at.angle_rate;
+    let against = q.angle_rate - at.angle_rate;
     let half_sum = 0.5 * (yarn.ellipse_short + yarn.ellipse_long);
     let half_difference = 0.5 * (yarn.ellipse_short - yarn.ellipse_long);
-    let spoke_acceleration = -(q.radial * unit.x + q.tangential * unit.y) * (half_sum * with_ply * with_ply)
-        - (q.radial * unit.x - q.tangential * unit.y) * (half_difference * against * against);
+    let spoke_acceleration = -(q.radial * at.unit.x + q.tangential * at.unit.y) * (half_sum * with_ply * with_ply)
+        - (q.radial * at.unit.x - q.tangential * at.unit.y) * (half_difference * against * against);
+    let spoke = q.radial * (at.unit.x * yarn.ellipse_short) + q.tangential * (at.unit.y * yarn.ellipse_long);
+    let spoke_rate = q.radial_rate * (at.unit.x * yarn.ellipse_short) + q.tangential_rate * (at.unit.y * yarn.ellipse_long)
+        + (q.tangential * (at.unit.x * yarn.ellipse_long) - q.radial * (at.unit.y * yarn.ellipse_short)) * at.angle_rate;
+    let shape = at.profile;
     f.acceleration = q.acceleration + p.radius * (spoke_acceleration * shape.radius
-        + 2.0 * spoke_rate * (shape.radius_rate * phase_rate)
-        + spoke * (shape.radius_acceleration * phase_rate * phase_rate));
+        + 2.0 * spoke_rate * (shape.radius_rate * at.phase_rate)
+        + spoke * (shape.radius_acceleration * at.phase_rate * at.phase_rate));
     f.flyaway = shape.flyaway;
     f.taper = shape.taper;
-    f.piece = shape.piece;
-    f.period = period;
     return f;
 }
 
