@@ -126,8 +126,9 @@ struct Yarn {
     extinction_table: u32,
     seen_sky_table: u32,
     seen_sky_size: u32,
-    padding_0: u32,
-    padding_1: u32,
+    // Share of the light on the yarn that goes through between its fibers.
+    through_circle: f32,
+    padding: u32,
 }
 
 struct Material {

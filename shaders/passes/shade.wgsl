@@ -63,7 +63,7 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
     let share = 1.0 / f32(max(frame.sky_view_count, 1u));
     for (var i = 0u; i < frame.sky_view_count; i++) {
         let direction = sky_direction(frame.sky_view + i);
-        let open = sky_open(frame.sky_view + i, direction, surface.tube, surface.position);
+        let open = mix(yarn.through_circle, 1.0, sky_open(frame.sky_view + i, direction, surface.tube, surface.position));
         around.open += share * open;
         if frame.multiple == 1u {
             let scattered = transport_ambient(transport, seen.section, direction) * hidden;
@@ -76,6 +76,29 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
 
 // Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
 const CLOTH_OPEN: f32 = 0.5;
+
+// Yarns that a light goes through at most: the way to the nearest yarn of the map is known, not what of it is yarn and what is air.
+const MOST_YARNS_ABOVE: f32 = 3.0;
+
+// What other yarns leave of a light.
+struct Passing {
+    // Share that comes straight, beside them and between their fibers.
+    straight: f32,
+    // Share that they scatter on, over the half space of the light: each yarn some [Zinke2008, in spirit].
+    spread: vec3f,
+}
+
+fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, tube: Tube, position: vec3f) -> Passing {
+    let shadow = light_shadow(light, incident, tube, position);
+    let yarns_above = clamp(shadow.way / (2.0 * tube.radius), 1.0, MOST_YARNS_ABOVE);
+    let between_fibers = pow(yarn.through_circle, yarns_above);
+    let blocked = 1.0 - shadow.open;
+    var spread = vec3f(0.0);
+    if frame.multiple == 1u {
+        spread = blocked * max(pow(through, vec3f(yarns_above)) - between_fibers, vec3f(0.0));
+    }
+    return Passing(shadow.open + blocked * between_fibers, spread);
+}
 
 fn shade(draw: u32, surface: Surface) -> vec3f {
     let yarn = yarns[draws[draw].yarn];
@@ -109,15 +132,18 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
             continue;
         }
         let own = self_shadow(yarn, seen, incident.direction);
-        let shadow = light_shadow(light, incident, surface.tube, surface.position);
-        radiance += reflected_once(material, surface, incident.direction, view) * incident.irradiance * (own * shadow.open);
+        let passing = passing_light(yarn, albedo.through, light, incident, surface.tube, surface.position);
+        radiance += reflected_once(material, surface, incident.direction, view) * incident.irradiance * (own * passing.straight);
         if frame.multiple == 1u {
-            // Light that comes through other yarns is spread over the half space of the light.
-            let yarns_above = max(shadow.way / (2.0 * surface.tube.radius), 1.0);
-            let dimmed = incident.irradiance * ((1.0 - shadow.open) * pow(albedo.through, vec3f(yarns_above)));
-            let arriving = incident.irradiance * shadow.open + dimmed;
+            // TT takes in what other yarns scatter as far as that half space is behind the fiber.
+            let behind = 0.5 - 0.5 * dot(section_direction(section, incident.direction).unit, seen.view);
+            radiance += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own / PI);
+            // Fibers send each other light over about a yarn's radius, which blurs the shadows in it [Khungurn2017 §5.3.2]: another place for each sample.
+            let aside = sky_direction(frame.sky_view);
+            let place = surface.position + surface.tube.radius * (aside - incident.direction * dot(aside, incident.direction));
+            let blurred = passing_light(yarn, albedo.through, light, incident, surface.tube, place);
+            let arriving = incident.irradiance * (blurred.straight + blurred.spread);
             radiance += transport_radiance(transport, section, incident.direction) * arriving * hidden;
-            radiance += even * dimmed * (own / PI);
             // Neighbours have the irradiance of this yarn.
             for (var k = 0u; k < frame.sky_view_count; k++) {
                 let cosine = -dot(sky_direction(frame.sky_view + k), incident.direction);

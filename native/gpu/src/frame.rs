@@ -23,7 +23,7 @@ const ROW: u32 = 32768;
 /// Most pixels of a tile.
 const TILE_PIXELS: u64 = 1 << 22;
 
-/// Directions of the sky that a picture takes at least.
+/// Directions of the sky that a picture takes at least; `MOST_SKY_VIEWS` of `shaders/passes/shade.wgsl`.
 const LEAST_SKY_VIEWS: u32 = 8;
 
 /// Bits of a visibility key for the place along a segment, and for depth.

@@ -132,8 +132,8 @@ shared! {
         extinction_table: u32,
         seen_sky_table: u32,
         seen_sky_size: u32,
-        padding_0: u32,
-        padding_1: u32,
+        through_circle: f32,
+        padding: u32,
     }
     Material {
         color_r: Vec3,

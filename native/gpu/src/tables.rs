@@ -118,8 +118,8 @@ impl TableBuffer {
             extinction_table,
             seen_sky_table,
             seen_sky_size: tables.self_shadow.seen_sky_size as u32,
-            padding_0: 0,
-            padding_1: 0,
+            through_circle: tables.self_shadow.through_circle,
+            padding: 0,
         });
     }
 

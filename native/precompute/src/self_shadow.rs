@@ -44,6 +44,8 @@ pub struct SelfShadow {
     pub seen_sky: Vec<f32>,
     /// Texels along a side of `seen_sky`.
     pub seen_sky_size: usize,
+    /// Share of the light on the yarn's outer circle that goes through between its fibers: the mean over its width and all sides.
+    pub through_circle: f32,
 }
 
 /// c in the middle of the squared y axis of [`SelfShadow::seen_sky`].
@@ -113,7 +115,11 @@ impl SelfShadow {
             .flat_map_iter(|k| depth_slice(density, sector * k as f64 / SLICES as f64, SIZE))
             .map(|depth| depth as f32)
             .collect();
+        let optical_depth: Vec<f32> = optical_depth;
         let texel = |k: usize| ((k as f64 + 0.5) / SIZE as f64 * 2.0 - 1.0) * EXTENT;
+        // The first texel of a row has all fibers between it and the light.
+        let rows = optical_depth.chunks_exact(SIZE).enumerate().filter(|(k, _)| texel(k % SIZE).abs() < 1.0);
+        let (through, count) = rows.fold((0.0, 0.0), |(sum, count), (_, row)| (sum + (-row[0]).exp(), count + 1.0));
         let extinction =
             (0..SIZE * SIZE).map(|k| density.extinction(DVec2::new(texel(k % SIZE), texel(k / SIZE))) as f32).collect();
         Self {
@@ -132,6 +138,7 @@ impl SelfShadow {
                 })
                 .collect(),
             seen_sky_size: SEEN_SKY_SIZE,
+            through_circle: through / count,
         }
     }
 
