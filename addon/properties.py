@@ -188,8 +188,39 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
         update=_tag,
     )
 
+    method: EnumProperty(
+        name="Pictures",
+        description="How final pictures are drawn; viewports are always drawn in real time",
+        items=(
+            ("REAL_TIME", "Real Time", "By the renderer of the viewport", 0),
+            (
+                "REFERENCE",
+                "Reference",
+                "By a path tracer through every fiber, on all cores: slow, and right. "
+                "It takes 30 to 100 bytes of memory for each segment of a fiber",
+                1,
+            ),
+        ),
+    )
     samples: IntProperty(
         name="Samples", description="Jittered samples per pixel", min=1, soft_max=256, max=65536, default=16
+    )
+    reference_samples: IntProperty(
+        name="Samples",
+        description="Paths per pixel of a reference picture",
+        min=1,
+        soft_max=4096,
+        max=65536,
+        default=64,
+    )
+    reference_bounces: IntProperty(
+        name="Bounces",
+        description="Most times that light is scattered in a reference picture; 0 for any number. "
+        "With 1 fibers keep their diffuse part, which otherwise stands for light scattered between them",
+        min=0,
+        soft_max=64,
+        max=65536,
+        default=0,
     )
     viewport_samples: IntProperty(
         name="Viewport Samples",

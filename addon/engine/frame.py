@@ -8,6 +8,7 @@ from ..core.pixels import look_up
 from ..export.camera import native_camera
 from ..export.scene import collect
 from ..export.world import ambient_radiance
+from . import reference
 from .assembly import add_objects
 from .job import REST_SHAPES
 from .renderer import drop, renderer
@@ -41,18 +42,24 @@ def _draw(lisle, engine, depsgraph, size, note):
         return not engine.test_break()
 
     engine.update_stats("", "Drawing")
-    image = renderer(lisle).render(
-        scene,
-        size=frame_size,
-        region=region,
-        samples=settings.samples,
-        shading=settings.shading,
-        occlusion=settings.occlusion,
-        lod_pixels=settings.lod,
-        seed=settings.seed,
-        transparent=render.film_transparent,
-        progress=progress,
-    )
+    options = {
+        "size": frame_size,
+        "region": region,
+        "transparent": render.film_transparent,
+        "progress": progress,
+    }
+    if settings.method == "REFERENCE":
+        image = reference.draw(lisle, scene, settings, **options)
+    else:
+        image = renderer(lisle).render(
+            scene,
+            samples=settings.samples,
+            shading=settings.shading,
+            occlusion=settings.occlusion,
+            lod_pixels=settings.lod,
+            seed=settings.seed,
+            **options,
+        )
     pictures = {name: image[name] for name in image}
     if depsgraph.view_layer.use_pass_object_index:
         pictures["pass_index"] = look_up(image["object_id"], pass_index_of)
@@ -85,4 +92,6 @@ def _native_scene(lisle, engine, depsgraph, frame_size, note):
         lights=content.lights,
         ambient=ambient_radiance(depsgraph.scene.world, note),
     )
-    return scene, add_objects(lisle, scene, content, at_rest, REST_SHAPES)
+    settings = depsgraph.scene.lisle
+    material_of = reference.material_of(settings) if settings.method == "REFERENCE" else None
+    return scene, add_objects(lisle, scene, content, at_rest, REST_SHAPES, material_of)

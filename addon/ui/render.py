@@ -28,7 +28,13 @@ class LISLE_RENDER_PT_sampling(LislePanel, bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.split_layout(), context.scene.lisle
         layout.prop(settings, "viewport_samples", text="Viewport")
-        layout.prop(settings, "samples", text="Render")
+        column = layout.column()
+        column.prop(settings, "method")
+        if settings.method == "REFERENCE":
+            column.prop(settings, "reference_samples", text="Render")
+            column.prop(settings, "reference_bounces")
+        else:
+            column.prop(settings, "samples", text="Render")
         layout.prop(settings, "seed")
 
 
@@ -39,8 +45,10 @@ class LISLE_RENDER_PT_shading(LislePanel, bpy.types.Panel):
     def draw(self, context):
         layout, settings = self.split_layout(), context.scene.lisle
         layout.prop(settings, "shading")
-        layout.prop(settings, "occlusion")
-        layout.prop(settings, "lod")
+        column = layout.column()
+        column.active = settings.method != "REFERENCE"
+        column.prop(settings, "occlusion")
+        column.prop(settings, "lod")
 
 
 class LISLE_RENDER_PT_reference(LislePanel, bpy.types.Panel):

@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let segments = made.segments();
     println!("{} fibers, {segments} segments in {:.1} s", made.len(), start.elapsed().as_secs_f64());
     let start = Instant::now();
-    let assembly = Assembly::new(made);
+    let assembly = Assembly::new(made, &mut || ControlFlow::Continue(()))?;
     let seconds = start.elapsed().as_secs_f64();
     println!(
         "hierarchy in {seconds:.1} s; {} bytes, {:.1} a segment",

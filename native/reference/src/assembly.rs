@@ -1,5 +1,8 @@
 //! All fibers of a scene, and what rays meet among them.
 
+use std::ops::ControlFlow;
+use std::time::Duration;
+
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
@@ -8,13 +11,21 @@ use obvhs::ray::{Ray as BoxRay, RayHit};
 use obvhs::{Boundable, BvhBuildParams};
 use rayon::prelude::*;
 
+use crate::Error;
 use crate::cone::{Entry, RoundCone};
 use crate::fibers::{Fibers, position};
 
 /// Leaves at most. A leaf is a run of neighbouring round cones of a fiber: one for scenes with fewer cones than this, more for larger ones.
-/// Building takes about 200 bytes a leaf. Runs of 2, 4 and 8 instead of 1 take 26, 21 and 19 bytes a cone instead of 36, and rays take
-/// 1.3, 2.4 and 5 times as long (`examples/rays.rs`, 9 M cones).
+/// Runs of 2, 4 and 8 instead of 1 take 26, 21 and 19 bytes a cone instead of 36, and rays take 1.3, 2.4 and 5 times as long
+/// (`examples/rays.rs`, 9 M cones).
 const MOST_LEAVES: usize = 25_000_000;
+
+/// Leaves of a part of the hierarchy, about. Parts are built one after another, so that the work can be stopped between them, and building
+/// takes memory for few at once.
+const PART: usize = 1 << 17;
+
+/// Runs are sorted into so many cells a side before they are shared out to parts.
+const CELLS: usize = 64;
 
 /// Longest run.
 const MOST_RUN: usize = 8;
@@ -28,15 +39,17 @@ const MARGIN: f32 = 1e-6 * BOX_RADIUS as f32;
 /// A hit within this share of a radius below the neighbour's surface is on it.
 const JOINT: f64 = 1e-6;
 
-/// Fibers with a bounding volume hierarchy over runs of them.
+/// Fibers with a bounding volume hierarchy over runs of them: of two levels, parts of the scene and what is in each.
 pub struct Assembly {
     /// Chains one after another; the radius of a chain's last point has its sign bit set.
     points: Vec<[f32; 4]>,
-    /// First segment of every run, in the order of the hierarchy's leaves.
+    /// First segment of every run, part after part, each in the order of its leaves.
     runs: Vec<u32>,
     /// Most segments of a run.
     run: usize,
-    hierarchy: CwBvh,
+    parts: Vec<Part>,
+    /// Over the parts.
+    top: CwBvh,
     /// Units of the boxes per unit of length, a power of two; their origin is the centre.
     scale: f64,
     center: DVec3,
@@ -94,6 +107,12 @@ impl Clipped {
     }
 }
 
+/// Runs that lie near each other.
+struct Part {
+    first_run: usize,
+    hierarchy: CwBvh,
+}
+
 struct RunBox<'a> {
     points: &'a [[f32; 4]],
     center: DVec3,
@@ -113,8 +132,11 @@ impl Boundable for RunBox<'_> {
 }
 
 impl Assembly {
-    /// Builds the hierarchy.
-    pub fn new(fibers: Fibers) -> Self {
+    /// Builds the hierarchy. `progress` is called several times a second and can stop the work.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`].
+    pub fn new(fibers: Fibers, progress: &mut dyn FnMut() -> ControlFlow<()>) -> Result<Self, Error> {
         let Fibers { mut points, offsets } = fibers;
         let run = (points.len() / MOST_LEAVES + 1).min(MOST_RUN);
         let ends = offsets.windows(2).map(|w| w[0] as usize..w[1] as usize);
@@ -135,18 +157,46 @@ impl Assembly {
         let center = 0.5 * (low + high);
         let radius = 0.5 * low.distance(high);
         let scale = (BOX_RADIUS / radius.max(1e-30)).log2().round().exp2();
-        let boxes: Vec<RunBox> =
-            runs.iter().map(|first| RunBox { points: run_of(&points, *first as usize, run), center, scale }).collect();
-        let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::fast_build() };
-        let mut hierarchy = build_cwbvh(&boxes, params, &mut std::time::Duration::default());
-        let ordered = std::mem::take(&mut hierarchy.primitive_indices);
-        let runs = ordered.into_iter().map(|place| runs[place as usize]).collect();
-        Self { points, runs, run, hierarchy, scale, center, radius }
+        let mut go_on = || if progress().is_break() { Err(Error::Cancelled) } else { Ok(()) };
+        go_on()?;
+        if runs.len() > PART {
+            runs = by_cells(&runs, &points, low, high, &mut go_on)?;
+        }
+        let (mut parts, mut boxes) = (Vec::new(), Vec::new());
+        // As many parts at once as there are threads: a part takes a tenth of a second or two.
+        let starts: Vec<usize> = (0..runs.len()).step_by(PART).collect();
+        for starts in starts.chunks(rayon::current_num_threads()) {
+            let built: Vec<_> = starts
+                .par_iter()
+                .map(|&first_run| {
+                    let runs = &runs[first_run..runs.len().min(first_run + PART)];
+                    let of_run = |first: &u32| RunBox { points: run_of(&points, *first as usize, run), center, scale };
+                    let boxes: Vec<Aabb> = runs.iter().map(|first| of_run(first).aabb()).collect();
+                    let mut hierarchy = build_cwbvh(&boxes, one_a_leaf(), &mut Duration::default());
+                    let order = std::mem::take(&mut hierarchy.primitive_indices);
+                    let ordered: Vec<u32> = order.into_iter().map(|place| runs[place as usize]).collect();
+                    let bounds = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one));
+                    (Part { first_run, hierarchy }, ordered, bounds)
+                })
+                .collect();
+            for (part, ordered, bounds) in built {
+                runs[part.first_run..part.first_run + ordered.len()].copy_from_slice(&ordered);
+                parts.push(part);
+                boxes.push(bounds);
+            }
+            go_on()?;
+        }
+        let mut top = build_cwbvh(&boxes, one_a_leaf(), &mut Duration::default());
+        let mut places: Vec<Option<Part>> = parts.into_iter().map(Some).collect();
+        let parts = std::mem::take(&mut top.primitive_indices);
+        let parts = parts.into_iter().filter_map(|place| places[place as usize].take()).collect();
+        Ok(Self { points, runs, run, parts, top, scale, center, radius })
     }
 
     /// Bytes of fibers and hierarchy.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.points[..]) + size_of_val(&self.runs[..]) + size_of_val(&self.hierarchy.nodes[..])
+        let nodes: usize = self.parts.iter().map(|part| size_of_val(&part.hierarchy.nodes[..])).sum();
+        size_of_val(&self.points[..]) + size_of_val(&self.runs[..]) + nodes + size_of_val(&self.top.nodes[..])
     }
 
     /// Number of round cones.
@@ -181,14 +231,19 @@ impl Assembly {
     pub fn nearest(&self, ray: &Ray, reach: f64) -> Option<Hit> {
         let clipped = self.clip(ray, reach)?;
         let mut best: Option<Hit> = None;
-        self.hierarchy.ray_traverse(clipped.ray, &mut RayHit::none(), |_, id| {
-            for segment in self.run_at(id) {
-                let most = best.map_or(reach, |hit| hit.t);
-                if let Some(entry) = self.enter(ray, segment, most) {
-                    best = Some(Hit { t: entry.t, segment: segment as u32, along: entry.along });
+        let shortened = |best: &Option<Hit>| best.map_or(f32::INFINITY, |hit| clipped.shorten(hit.t));
+        self.top.ray_traverse(clipped.ray, &mut RayHit::none(), |box_ray, part| {
+            let Part { first_run, hierarchy } = &self.parts[part];
+            hierarchy.ray_traverse(*box_ray, &mut RayHit::none(), |_, id| {
+                for segment in self.run_at(first_run + id) {
+                    let most = best.map_or(reach, |hit| hit.t);
+                    if let Some(entry) = self.enter(ray, segment, most) {
+                        best = Some(Hit { t: entry.t, segment: segment as u32, along: entry.along });
+                    }
                 }
-            }
-            best.map_or(f32::INFINITY, |hit| clipped.shorten(hit.t))
+                shortened(&best)
+            });
+            shortened(&best)
         });
         best
     }
@@ -196,8 +251,13 @@ impl Assembly {
     /// Whether the ray enters any fiber between the distances 0 and `reach`.
     pub fn is_blocked(&self, ray: &Ray, reach: f64) -> bool {
         let Some(clipped) = self.clip(ray, reach) else { return false };
-        let is_blocked_by = |id: usize| self.run_at(id).any(|segment| self.enter(ray, segment, reach).is_some());
-        !self.hierarchy.ray_traverse_miss(clipped.ray, |_, id| if is_blocked_by(id) { 0.0 } else { f32::INFINITY })
+        let is_blocked_by = |run: usize| self.run_at(run).any(|segment| self.enter(ray, segment, reach).is_some());
+        // A hit is told by a distance of 0.
+        let distance = |is_hit: bool| if is_hit { 0.0 } else { f32::INFINITY };
+        !self.top.ray_traverse_miss(clipped.ray, |box_ray, part| {
+            let Part { first_run, hierarchy } = &self.parts[part];
+            distance(!hierarchy.ray_traverse_miss(*box_ray, |_, id| distance(is_blocked_by(first_run + id))))
+        })
     }
 
     fn enter(&self, ray: &Ray, segment: usize, most: f64) -> Option<Entry> {
@@ -206,9 +266,9 @@ impl Assembly {
         counts.then_some(entry)
     }
 
-    /// Segments of a leaf's run.
-    fn run_at(&self, id: usize) -> impl Iterator<Item = usize> {
-        let first = self.runs[id] as usize;
+    /// Segments of a run.
+    fn run_at(&self, number: usize) -> impl Iterator<Item = usize> {
+        let first = self.runs[number] as usize;
         first..first + run_of(&self.points, first, self.run).len() - 1
     }
 
@@ -278,6 +338,48 @@ impl Assembly {
             inner(point)
         }
     }
+}
+
+fn one_a_leaf() -> BvhBuildParams {
+    BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::fast_build() }
+}
+
+/// Runs in the order of the cells of a grid along a space-filling curve, so that neighbours in the list are neighbours in space.
+fn by_cells(
+    runs: &[u32],
+    points: &[[f32; 4]],
+    low: DVec3,
+    high: DVec3,
+    go_on: &mut dyn FnMut() -> Result<(), Error>,
+) -> Result<Vec<u32>, Error> {
+    const BLOCK: usize = 1 << 21;
+    let cells = (high - low).max_element().max(1e-30).recip() * CELLS as f64;
+    // Bits of the three numbers in turn: a Morton code.
+    let spread = |i: u32| (0..CELLS.ilog2()).map(|bit| (i >> bit & 1) << (3 * bit)).sum::<u32>();
+    let spread: Vec<u32> = (0..CELLS as u32).map(spread).collect();
+    let cell = |first: u32| {
+        let place =
+            ((position(points[first as usize]) - low) * cells).as_uvec3().min(glam::UVec3::splat(CELLS as u32 - 1));
+        (spread[place.x as usize] | spread[place.y as usize] << 1 | spread[place.z as usize] << 2) as usize
+    };
+    let mut starts = vec![0_usize; CELLS.pow(3) + 1];
+    for block in runs.chunks(BLOCK) {
+        block.iter().for_each(|first| starts[cell(*first) + 1] += 1);
+        go_on()?;
+    }
+    for i in 1..starts.len() {
+        starts[i] += starts[i - 1];
+    }
+    let mut sorted = vec![0; runs.len()];
+    for block in runs.chunks(BLOCK) {
+        for first in block {
+            let next = &mut starts[cell(*first)];
+            sorted[*next] = *first;
+            *next += 1;
+        }
+        go_on()?;
+    }
+    Ok(sorted)
 }
 
 /// Points of the run of at most `most` segments that begins with a segment.

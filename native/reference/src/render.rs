@@ -32,7 +32,8 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Checks scene and settings, makes the fibers and finds a hierarchy for them. `progress` is called after each curve and can stop the work.
+    /// Checks scene and settings, makes the fibers and finds a hierarchy for them. `progress` is called several times a second and can
+    /// stop the work.
     ///
     /// # Errors
     /// [`Error`] for whatever cannot be drawn; [`Error::Cancelled`].

@@ -61,7 +61,7 @@ impl World {
         }
         let sky = environment.and_then(Sky::new).map(|sky| Emitter::Sky(Box::new(sky)));
         Ok(Self {
-            assembly: Assembly::new(all),
+            assembly: Assembly::new(all, progress)?,
             objects,
             lights: scene.lights.iter().map(|light| Emitter::new(light, origin)).chain(sky).collect(),
             ambient: scene.ambient.as_dvec3(),

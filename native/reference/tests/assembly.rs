@@ -47,13 +47,71 @@ fn ray(i: u32, scale: f64) -> Ray {
     Ray { origin: target * DVec3::new(1.0, 1.0, 0.1) - direction * 3.0 * scale, direction }
 }
 
+fn assembled(fibers: Fibers) -> Assembly {
+    Assembly::new(fibers, &mut || ControlFlow::Continue(())).expect("never stopped")
+}
+
+/// Straight fibers of ten cones each, everywhere in a cube and every way.
+fn haystack(count: u32) -> Fibers {
+    let mut fibers = Fibers { points: Vec::new(), offsets: vec![0] };
+    for i in 0..count {
+        let start = DVec3::new(unit(i, 10), unit(i, 11), unit(i, 12)) * 2.0 - 1.0;
+        let step = sphere([unit(i, 13), unit(i, 14)]) * 0.01;
+        let at = |k: i32| (start + step * f64::from(k)).as_vec3().extend(0.002).to_array();
+        fibers.points.extend((0..=10).map(at));
+        fibers.offsets.push(fibers.points.len() as u32);
+    }
+    fibers
+}
+
+#[test]
+fn scenes_of_many_parts_are_met_as_those_of_one() {
+    // Two parts and a bit.
+    let fibers = haystack(27_000);
+    let cones = cones(&fibers);
+    let assembly = assembled(fibers);
+    let mut met = 0;
+    for i in 0..60 {
+        let ray = ray(i, 1.0);
+        let expected = cones
+            .iter()
+            .filter_map(|cone| cone.enter(ray.origin, ray.direction))
+            .map(|entry| entry.t)
+            .fold(f64::INFINITY, f64::min);
+        let found = assembly.nearest(&ray, f64::INFINITY).map_or(f64::INFINITY, |hit| hit.t);
+        assert_eq!(found, expected, "ray {i}");
+        assert_eq!(assembly.is_blocked(&ray, f64::INFINITY), expected.is_finite());
+        met += usize::from(expected.is_finite());
+    }
+    assert!(met > 20, "{met}");
+}
+
+#[test]
+fn building_can_be_stopped_at_every_step() {
+    let fibers = haystack(27_000);
+    let mut steps = 0;
+    let made = Assembly::new(fibers.clone(), &mut || {
+        steps += 1;
+        ControlFlow::Continue(())
+    });
+    assert!(made.is_ok() && steps >= 4, "{steps}");
+    for stop in 1..=steps {
+        let mut left = stop;
+        let made = Assembly::new(fibers.clone(), &mut || {
+            left -= 1;
+            if left == 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert!(matches!(made, Err(lisle_reference::Error::Cancelled)) && left == 0, "step {stop}");
+    }
+}
+
 #[test]
 fn rays_meet_what_a_look_at_every_cone_finds() {
     // Small scenes and large ones: nothing depends on the unit of length.
     for scale in [1e-5, 1.0, 1e5] {
         let fibers = fibers_of_loop(scale);
         let cones = cones(&fibers);
-        let assembly = Assembly::new(fibers);
+        let assembly = assembled(fibers);
         let mut met = 0;
         for i in 0..400 {
             let ray = ray(i, scale);
@@ -83,7 +141,7 @@ fn a_ray_from_inside_leaves_unhindered() {
     let yarns = support::straight(&[[DVec3::NEG_X, DVec3::X]], 0.1);
     let made =
         fibers(yarns.strands(), &support::single_fiber(), &Options::default(), &mut |_| ControlFlow::Continue(()));
-    let assembly = Assembly::new(made.expect("fibers"));
+    let assembly = assembled(made.expect("fibers"));
     for direction in
         [DVec3::X, DVec3::new(1.0, 0.02, 0.0).normalize(), DVec3::Y, DVec3::new(-0.3, 0.1, 0.9).normalize()]
     {
@@ -94,7 +152,7 @@ fn a_ray_from_inside_leaves_unhindered() {
 
 #[test]
 fn nothing_is_met_where_nothing_is() {
-    let empty = Assembly::new(Fibers { points: vec![], offsets: vec![0] });
+    let empty = assembled(Fibers { points: vec![], offsets: vec![0] });
     let ray = Ray { origin: DVec3::ZERO, direction: DVec3::X };
     assert_eq!(empty.nearest(&ray, f64::INFINITY), None);
     assert!(!empty.is_blocked(&ray, f64::INFINITY));
@@ -111,7 +169,7 @@ fn tangents_and_normals_are_those_of_the_curve() {
     let yarns = Yarns::new(Curves::catmull_rom(vec![curve], false), Some(1e-7)).expect("valid curves");
     let made =
         fibers(yarns.strands(), &support::single_fiber(), &Options::default(), &mut |_| ControlFlow::Continue(()));
-    let assembly = Assembly::new(made.expect("fibers"));
+    let assembly = assembled(made.expect("fibers"));
     let (mut worst, mut met) = (0.0_f64, 0);
     for i in 0..300 {
         let angle = 0.5 + 8.5 * unit(i, 0);

@@ -12,7 +12,7 @@ scenes = []
 """Every (Scene, render arguments) that was drawn."""
 
 fail = {}
-"""Name of a call ('Yarns', 'render') → exception that it raises."""
+"""Name of a call ('Yarns', 'render', 'reference') → exception that it raises."""
 
 
 class Error(Exception):
@@ -168,12 +168,13 @@ class Scene:
 
 class Renderer:
     adapter = SimpleNamespace(name="a stand-in, no GPU")
+    _NAME = "render"
 
     def render(self, scene, *, size, samples, region, transparent, progress, **settings):
         scenes.append(
             (scene, {"size": size, "samples": samples, "region": region, "transparent": transparent} | settings)
         )
-        _fail("render")
+        _fail(self._NAME)
         if not progress(0.5):
             raise Cancelled("cancelled")
         width, height = size
@@ -210,3 +211,13 @@ class Renderer:
             x0, y0, x1, y1 = region
             image = {name: picture[height - y1 : height - y0, x0:x1] for name, picture in image.items()}
         return image
+
+
+class Reference(Renderer):
+    _NAME = "reference"
+
+    def render(self, scene, *, bounces, **options):
+        assert bounces is None or bounces > 0
+        unknown = set(options) - {"size", "samples", "region", "transparent", "progress", "shading", "seed"}
+        assert not unknown, unknown
+        return super().render(scene, bounces=bounces, **options)

@@ -13,6 +13,9 @@ use super::detail::{CurveDetail, Detail};
 /// Chord errors that make sense: below, f32 rounds more away.
 const CHORD_ERRORS: RangeInclusive<f64> = 1e-3..=10.0;
 
+/// Segments of fibers that are made between two calls of the progress callback, about: a fraction of a second.
+const BATCH: usize = 1 << 16;
+
 /// How fibers become chains of points.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
@@ -47,7 +50,8 @@ pub enum FibersError {
 }
 
 /// Every fiber of every curve, loops and hairs included, nothing merged, in the order of curves, plies and fibers. `yarn` is a valid one
-/// ([`Yarn::validate`]). `progress` is called with the finished share after each curve and can stop the work.
+/// ([`Yarn::validate`]). `progress` is called with the finished share several times a second and can
+/// stop the work.
 ///
 /// # Errors
 /// [`FibersError`].
@@ -91,22 +95,28 @@ pub(crate) fn append(
             chord_error: options.chord_error,
         };
         let seed = fiber_seed(options.object_id, index as u32);
-        let made: Vec<Chains> = (0..yarn.plies * yarn.fibers_per_ply)
-            .into_par_iter()
-            .map(|i| curve.chains(Fiber { seed, ply: i / yarn.fibers_per_ply, index: i % yarn.fibers_per_ply }))
-            .collect();
-        let count: usize = made.iter().map(|chains| chains.points.len()).sum();
-        if all.points.len() + count > u32::MAX as usize {
-            return Err(FibersError::TooMany);
-        }
-        all.points.reserve(count);
-        for chains in made {
-            let first = all.points.len() as u32;
-            all.points.extend(chains.points);
-            all.offsets.extend(chains.ends.iter().map(|end| first + end));
-        }
-        if progress((index + 1) as f64 / strands.closed().len() as f64).is_break() {
-            return Err(FibersError::Cancelled);
+        let fibers = yarn.plies * yarn.fibers_per_ply;
+        let batch = (BATCH / curve.segments.len().max(1)).max(rayon::current_num_threads()) as u32;
+        for first in (0..fibers).step_by(batch as usize) {
+            let end = fibers.min(first + batch);
+            let made: Vec<Chains> = (first..end)
+                .into_par_iter()
+                .map(|i| curve.chains(Fiber { seed, ply: i / yarn.fibers_per_ply, index: i % yarn.fibers_per_ply }))
+                .collect();
+            let count: usize = made.iter().map(|chains| chains.points.len()).sum();
+            if all.points.len() + count > u32::MAX as usize {
+                return Err(FibersError::TooMany);
+            }
+            all.points.reserve(count);
+            for chains in made {
+                let first = all.points.len() as u32;
+                all.points.extend(chains.points);
+                all.offsets.extend(chains.ends.iter().map(|end| first + end));
+            }
+            let share = (index as f64 + f64::from(end) / f64::from(fibers)) / strands.closed().len() as f64;
+            if progress(share).is_break() {
+                return Err(FibersError::Cancelled);
+            }
         }
     }
     Ok(())

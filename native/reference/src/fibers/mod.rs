@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 
 /// Fibers as chains of round cones. A hair, and what begins beyond its tip, are chains of their own.
 ///
-/// Memory: 16 bytes a point and 4 a chain; while it is made, as much again for the curve in progress.
+/// Memory: 16 bytes a point and 4 a chain; while it is made, a little more for the fibers in progress.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fibers {
     /// Position and radius of every point, in the space and unit that was asked for.

@@ -1,0 +1,146 @@
+"""Final pictures by the path tracer."""
+
+import time
+
+import numpy as np
+import pytest
+import scenes
+
+
+def settings():
+    import bpy
+
+    return bpy.context.scene.lisle
+
+
+@pytest.mark.blender
+def test_its_settings_arrive(lisle):
+    import bpy
+
+    scenes.curves("Yarn", scenes.line())
+    settings().method, settings().reference_samples, settings().reference_bounces = "REFERENCE", 7, 3
+    settings().seed, settings().shading = 5, "simple"
+    bpy.ops.render.render()
+    _, given = lisle.scenes[-1]
+    expected = {"samples": 7, "bounces": 3, "seed": 5, "shading": "simple", "transparent": True}
+    assert given.items() >= expected.items() and "occlusion" not in given
+    settings().reference_bounces = 0
+    bpy.ops.render.render()
+    assert lisle.scenes[-1][1]["bounces"] is None
+    settings().method = "REAL_TIME"
+    bpy.ops.render.render()
+    assert "bounces" not in lisle.scenes[-1][1]
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize(
+    ("method", "shading", "bounces", "kept"),
+    [
+        ("REFERENCE", "physical", 0, False),
+        ("REFERENCE", "physical", 2, False),
+        ("REFERENCE", "physical", 1, True),
+        ("REFERENCE", "simple", 0, True),
+        ("REAL_TIME", "physical", 0, True),
+    ],
+)
+def test_light_between_fibers_is_not_counted_twice(lisle, method, shading, bounces, kept):
+    import bpy
+
+    scenes.curves("Yarn", scenes.line())
+    settings().method, settings().shading, settings().reference_bounces = method, shading, bounces
+    bpy.ops.render.render()
+    weights = [entry.material.diffuse_weight for entry in lisle.scenes[-1][0].entries]
+    assert weights == [lisle.Material.FIELDS["diffuse_weight"] if kept else 0.0]
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize("name", ["InputError", "DeviceError", "Error"])
+def test_its_errors_stop_the_job(lisle, tmp_path, name):
+    import bpy
+
+    scenes.curves("Yarn", scenes.line())
+    settings().method = "REFERENCE"
+    lisle.fail["reference"] = getattr(lisle, name)("the fibers have too many points")
+    scenes.use_exr(tmp_path / "a.exr")
+    with pytest.raises(RuntimeError, match="Lisle: the fibers have too many points"):
+        bpy.ops.render.render(write_still=True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def lit_yarn():
+    """A yarn across the picture, under a sun."""
+    import bpy
+
+    sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
+    sun.data.energy = 3
+    settings().reference_samples = settings().samples = 4
+    return scenes.curves("Yarn", scenes.line(30), radius=0.5)
+
+
+@pytest.mark.blender("wheel")
+def test_it_draws_what_the_renderer_draws(lisle, tmp_path):
+    lit_yarn()
+    settings().lod = 0
+    ours = scenes.render_rgba(tmp_path / "a.exr")
+    settings().method, settings().reference_bounces = "REFERENCE", 1
+    single = scenes.render_rgba(tmp_path / "b.exr")
+    np.testing.assert_allclose(single[..., 3].mean(), ours[..., 3].mean(), rtol=0.05)
+    settings().reference_bounces = 0
+    many = scenes.render_rgba(tmp_path / "c.exr")
+    np.testing.assert_array_equal(many[..., 3], single[..., 3])
+    assert many[20:28, :, :3].mean() == pytest.approx(ours[20:28, :, :3].mean(), rel=0.25)
+    assert single[20:28, :, :3].mean() < 0.7 * many[20:28, :, :3].mean()
+
+
+@pytest.mark.blender("wheel")
+def test_borders_and_passes(lisle, tmp_path):
+    import bpy
+
+    lit_yarn()
+    settings().method = "REFERENCE"
+    layer, render = bpy.context.view_layer, bpy.context.scene.render
+    layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = layer.lisle.use_pass_alpha = True
+    whole = scenes.render_channels(tmp_path / "whole.exr", multilayer=True)
+    render.use_border = render.use_crop_to_border = True
+    render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.25, 0.75
+    part = scenes.render_channels(tmp_path / "part.exr", multilayer=True)
+    assert part.keys() == whole.keys() and len(part) >= 10
+    for name, picture in part.items():
+        np.testing.assert_array_equal(picture, whole[name][12:36, 16:48], err_msg=name)
+
+
+@pytest.mark.blender("wheel")
+def test_it_can_be_stopped_at_any_time(addon, lisle, tmp_path):
+    """While fibers are made, while their hierarchy is built, and while it draws."""
+    import bpy
+
+    lit_yarn()
+    settings().method = "REFERENCE"
+    before = scenes.render_rgba(tmp_path / "a.exr")
+    asked = []
+
+    class Impatient:
+        """Blender's engine, with a user who stops at the n-th question."""
+
+        def __init__(self, engine, number):
+            self._engine, self._number = engine, number
+
+        def __getattr__(self, name):
+            return getattr(self._engine, name)
+
+        def test_break(self):
+            asked.append(time.monotonic())
+            return len(asked) >= self._number
+
+    draw = addon.engine.engine.draw
+    for number in (10**9, 1, 2, 3, 4):
+        asked.clear()
+        addon.engine.engine.draw = lambda engine, *arguments, number=number: draw(Impatient(engine, number), *arguments)
+        bpy.ops.render.render()
+        end = time.monotonic()
+        if number == 10**9:
+            assert len(asked) > 4, "fibers, hierarchy, and some samples"
+        else:
+            assert len(asked) == number and end - asked[-1] < 2
+    addon.engine.engine.draw = draw
+    np.testing.assert_array_equal(scenes.render_rgba(tmp_path / "b.exr"), before)
