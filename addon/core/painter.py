@@ -42,7 +42,7 @@ class Task:
     """Part to draw: (x0, y0, x1, y1) from the bottom left, end exclusive; not empty."""
     samples: int
     draw: Callable
-    """`draw(size, region, samples, seed, shadow_texels, go_on)` → (combined (h, w, 4), depth (h, w)), float32, top row
+    """`draw(size, region, samples, first_sample, shadow_texels, go_on)` → (combined (h, w, 4), depth (h, w)), float32, top row
     first. `go_on()` is asked now and then; draws nothing and raises Stopped once it says False."""
 
 
@@ -254,10 +254,10 @@ class Painter:
     def _timed(self, view, task):
         """`task.draw` with the seconds it took, or None if something else was to be drawn first."""
 
-        def draw(size, region, samples, seed, shadow_texels):
+        def draw(size, region, samples, first_sample, shadow_texels):
             start = time.perf_counter()
             try:
-                drawn = task.draw(size, region, samples, seed, shadow_texels, lambda: self._wanted(view, task))
+                drawn = task.draw(size, region, samples, first_sample, shadow_texels, lambda: self._wanted(view, task))
             except Stopped:
                 return None
             return *drawn, max(time.perf_counter() - start, 1e-6)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A view of the scene in a rectangle of the screen."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -18,10 +18,13 @@ class View:
     """(w, h) pixels."""
     region: tuple
     """(x0, y0, x1, y1) pixels from the bottom left, end exclusive; empty if x0 = x1 or y0 = y1."""
+    lens: dict = field(default_factory=dict)
+    """What `lisle.Camera` takes to blur what is out of focus; nothing for a pinhole."""
 
     def key(self):
         """Equal for equal views."""
-        return self.world_from_camera.tobytes(), self.clip_from_camera.tobytes(), self.size, self.region
+        lens = tuple(sorted(self.lens.items()))
+        return self.world_from_camera.tobytes(), self.clip_from_camera.tobytes(), self.size, self.region, lens
 
     @property
     def is_empty(self):

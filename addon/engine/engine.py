@@ -69,7 +69,7 @@ class LisleRenderEngine(bpy.types.RenderEngine):
             return
         self.bind_display_space_shader(depsgraph.scene)
         try:
-            self._say(self._viewport.draw(view_of(context, depsgraph.scene)))
+            self._say(self._viewport.draw(view_of(context, depsgraph.scene, depsgraph)))
         except Exception:
             traceback.print_exc()
         finally:

@@ -63,7 +63,7 @@ class Snapshot:
         if transparent is not None:
             settings["transparent"] = transparent
 
-        def draw(size, region, samples, seed, shadow_texels, go_on):
+        def draw(size, region, samples, first_sample, shadow_texels, go_on):
             lisle = self._lisle
             try:
                 image = renderer(lisle).render(
@@ -71,7 +71,7 @@ class Snapshot:
                     size=size,
                     region=region,
                     samples=samples,
-                    seed=seed,
+                    first_sample=first_sample,
                     shadow_resolution=shadow_texels,
                     progress=lambda _: go_on(),
                     **settings,

@@ -64,7 +64,7 @@ class Viewport:
     def _picture(self, view, lighting=None, transparent=None):
         """The picture if there is one, and a line for the status."""
         snapshot, lisle = self._snapshot, native.module()
-        camera = lisle.Camera.from_matrices(view.world_from_camera, view.clip_from_camera, view.size)
+        camera = lisle.Camera(view.world_from_camera, view.clip_from_camera, view.size, **view.lens)
         key = (snapshot.number, view.key(), repr(lighting))
         draw = snapshot.painter(camera, lighting, transparent)
         painting.PAINTER.show(self.name, Task(key, view.size, view.region, snapshot.samples, draw))

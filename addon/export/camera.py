@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The camera as two matrices; Blender itself works out sensor fit, shift, aspect and projection."""
+"""The camera as two matrices and a lens; Blender itself works out sensor fit, shift, aspect and projection."""
 
 import numpy as np
 
 from ..core.camera import without_scale
 from ..core.errors import SceneError
+
+_LEAST_FOCUS = 1e-5
 
 
 def native_camera(lisle, camera, depsgraph, size):
@@ -22,6 +24,40 @@ def native_camera(lisle, camera, depsgraph, size):
     clip_from_camera = evaluated.calc_matrix_camera(
         depsgraph, x=size[0], y=size[1], scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y
     )
-    return lisle.Camera.from_matrices(
-        without_scale(evaluated.matrix_world), np.array(clip_from_camera, dtype=np.float64), size
+    return lisle.Camera(
+        without_scale(evaluated.matrix_world),
+        np.array(clip_from_camera, dtype=np.float64),
+        size,
+        **lens_of(evaluated, depsgraph),
     )
+
+
+def lens_of(camera, depsgraph):
+    """What `lisle.Camera` takes to blur what is out of focus: nothing, if an evaluated camera object has no depth of field.
+
+    As Cycles has it: the f-stop divides the focal length, or one metre for an orthographic camera.
+    """
+    dof = camera.data.dof
+    if not dof.use_dof:
+        return {}
+    focal_length = 1.0 if camera.data.type == "ORTHO" else camera.data.lens * 1e-3
+    return {
+        "aperture_radius": focal_length / (2 * max(dof.aperture_fstop, 1e-5)),
+        "focus_distance": max(_focus_distance(camera, dof, depsgraph), _LEAST_FOCUS),
+        "blades": dof.aperture_blades,
+        "rotation_rad": dof.aperture_rotation,
+        "ratio": dof.aperture_ratio,
+    }
+
+
+def _focus_distance(camera, dof, depsgraph):
+    """Along the view axis."""
+    if dof.focus_object is None:
+        return dof.focus_distance
+    focus = dof.focus_object.evaluated_get(depsgraph)
+    target = focus.matrix_world
+    bone = focus.pose.bones.get(dof.focus_subtarget) if focus.pose is not None else None
+    if bone is not None:
+        target = target @ bone.matrix
+    axis = camera.matrix_world.col[2].xyz.normalized()
+    return abs(axis.dot(target.translation - camera.matrix_world.translation))

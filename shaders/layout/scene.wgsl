@@ -22,6 +22,12 @@ struct Frame {
     place_bits: u32,
     depth_bits: u32,
     sample_index: u32,
+    // Whether this is the picture's first sample, that the film begins with.
+    first: u32,
+    // Pixels around the tile within which samples may see what the culled one does not.
+    cull_margin: f32,
+    padding_3: u32,
+    padding_4: u32,
     lod_pixels: f32,
     light_count: u32,
     physical: u32,

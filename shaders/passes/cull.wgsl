@@ -36,10 +36,10 @@ fn work_of(segment: u32) -> Work {
     let p3 = knot_position(draw, knot + 2u);
     let hull = array<vec3f, 4>(p1, p1 + (p2 - p0) / 6.0, p2 - (p3 - p1) / 6.0, p2);
     let yarn = yarns[draws[draw].yarn];
-    let radius = yarn.bound * max(knot_radius(draw, knot), knot_radius(draw, knot + 1u)) + 1.0 / frame.pixels_per_unit;
+    let radius = yarn.bound * max(knot_radius(draw, knot), knot_radius(draw, knot + 1u));
     let rows = transpose(frame.pixel_from_render);
-    let low = vec2f(frame.origin);
-    let high = vec2f(frame.origin + frame.size);
+    let low = vec2f(frame.origin) - frame.cull_margin;
+    let high = vec2f(frame.origin + frame.size) + frame.cull_margin;
     if outside(rows[0] - rows[2] * low.x, hull, radius) || outside(rows[2] * high.x - rows[0], hull, radius)
         || outside(rows[1] - rows[2] * low.y, hull, radius) || outside(rows[2] * high.y - rows[1], hull, radius)
         || outside(rows[3] - vec4f(0.0, 0.0, 0.0, frame.near), hull, radius) {

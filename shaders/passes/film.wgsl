@@ -18,7 +18,7 @@ const FIBER_LIST: u32 = 0u;
 const CORE_LIST: u32 = 4u;
 
 fn add_sample(index: u32, color: vec4f, normal: vec3f, tangent: vec3f, depth: f32, draw_number: f32) {
-    if frame.sample_index == 0u {
+    if frame.first == 1u {
         film_color[index] = color;
         film_normal[index] = vec4f(normal, depth);
         film_tangent[index] = vec4f(tangent, draw_number);

@@ -11,7 +11,7 @@ SIZE = (640, 400)
 
 
 class Scene:
-    """Stands in for a scene: every pixel holds its place in the view, and the seed it was drawn with."""
+    """Stands in for a scene: every pixel holds its place in the view, and the samples it was drawn with."""
 
     def __init__(self, seconds_a_call=0.0):
         self.calls = []
@@ -19,8 +19,8 @@ class Scene:
         self.gate = threading.Event()
         self.gate.set()
 
-    def draw(self, size, region, samples, seed, shadow_texels, go_on):
-        self.calls.append((size, region, samples, seed))
+    def draw(self, size, region, samples, first_sample, shadow_texels, go_on):
+        self.calls.append((size, region, samples, first_sample))
         end = time.monotonic() + self.seconds
         while not self.gate.is_set() or time.monotonic() < end:
             if not go_on():
@@ -31,8 +31,8 @@ class Scene:
         y = (np.arange(y0, y1)[::-1] + 0.5) / size[1]  # top row first
         combined = np.zeros((y1 - y0, x1 - x0, 4), np.float32)
         combined[..., 0], combined[..., 1] = x, y[:, None]
-        combined[..., 2] = np.mean(np.arange(seed, seed + samples))
-        return combined, np.full(combined.shape[:2], seed, np.float32)
+        combined[..., 2] = np.mean(np.arange(first_sample, first_sample + samples))
+        return combined, np.full(combined.shape[:2], first_sample, np.float32)
 
     def task(self, key, samples=8, size=SIZE, region=None):
         return Task(key, size, region or (0, 0, *size), samples, self.draw)

@@ -250,3 +250,36 @@ def test_a_light_that_cannot_be_drawn_is_named(lisle, monkeypatch):
     light("SUN", energy=-1)
     with pytest.raises(RuntimeError, match=r"light 'Light': Sun\.strength"):
         render(lisle)
+
+
+def test_depth_of_field_is_the_cameras(lisle):
+    import bpy
+
+    scenes.curves("Yarn", scenes.line())
+    camera = bpy.context.scene.camera
+    dof = camera.data.dof
+    assert render(lisle).camera.aperture_radius == 0
+    camera.data.type, camera.data.lens = "PERSP", 40
+    dof.use_dof, dof.aperture_fstop, dof.focus_distance = True, 2.0, 3.5
+    dof.aperture_blades, dof.aperture_rotation, dof.aperture_ratio = 6, 0.5, 1.5
+    seen = render(lisle).camera
+    assert seen.aperture_radius == pytest.approx(0.01)
+    assert seen.focus_distance == pytest.approx(3.5)
+    assert (seen.blades, seen.rotation_rad, seen.ratio) == (6, pytest.approx(0.5), 1.5)
+    camera.data.type = "ORTHO"
+    assert render(lisle).camera.aperture_radius == pytest.approx(0.25)
+
+
+def test_focus_on_an_object_is_along_the_view(lisle):
+    import bpy
+
+    scenes.curves("Yarn", scenes.line())
+    camera = bpy.context.scene.camera
+    camera.scale = (3, 3, 3)
+    target = scenes.link(bpy.data.objects.new("Focus", None))
+    target.location = (2, 5, 4)
+    camera.data.dof.use_dof, camera.data.dof.focus_object = True, target
+    assert render(lisle).camera.focus_distance == pytest.approx(6)
+    scenes.keyframes(target, "location", {1: (0, 0, 4), 3: (0, 0, 0)})
+    bpy.context.scene.frame_set(3)
+    assert render(lisle).camera.focus_distance == pytest.approx(10)

@@ -325,3 +325,36 @@ def test_fibers_writes_a_stage(cloth, tmp_path):  # noqa: F811
     assert run("fibers", cloth, "-o", tmp_path / "fibers.obj").returncode == 1
     assert run("fibers", cloth, "-o", tmp_path / "no" / "fibers.usdc").returncode == 1
     assert not (tmp_path / "no").exists()
+
+
+def test_a_lens_blurs_the_same(scene, renderer):
+    """Coverage, which has no light in it: the same camera in both."""
+    camera = scene.camera
+    at = camera.world_from_camera
+    distance = float((at[:3, 3] - scene.objects[0].yarns.points.mean(axis=0)) @ at[:3, 2])
+    lens = {"aperture_radius": 0.06 * distance, "focus_distance": 0.6 * distance, "blades": 5, "ratio": 2.0}
+
+    def pictures(**lens):
+        seen = lisle.Scene(dataclasses.replace(camera, **lens), scene.lights, scene.ambient)
+        for entry in scene.objects:
+            seen.add(entry.yarns, entry.yarn, entry.material)
+        rendered = renderer.render(seen, samples=128, lod_pixels=0, shadow_resolution=64)
+        return rendered, draw(seen, samples=128, bounces=1)
+
+    def difference(a, b):
+        """Of means over 2 × 2 pixels, in which the reference's noise is half as large."""
+        blocks = (a["alpha"] - b["alpha"]).reshape(15, 2, 20, 2).mean(axis=(1, 3))
+        return float(np.sqrt((blocks**2).mean()))
+
+    sharp, sharp_reference = pictures()
+    blurred, blurred_reference = pictures(**lens)
+    error = difference(blurred, blurred_reference)
+    turned, _ = pictures(**lens | {"ratio": 0.5})
+    print(error, difference(sharp, sharp_reference), difference(blurred, sharp), difference(turned, blurred_reference))
+    assert error < 0.025
+    assert difference(sharp, sharp_reference) < 0.025
+    assert difference(blurred, sharp) > 3 * error
+    assert difference(turned, blurred_reference) > 1.5 * error
+    np.testing.assert_array_equal(blurred["depth"], sharp["depth"])
+    mean = [image["combined"][..., :3].mean() for image in (blurred, sharp)]
+    assert mean[0] == pytest.approx(mean[1], rel=0.03)

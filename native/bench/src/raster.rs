@@ -62,6 +62,7 @@ fn camera() -> Camera {
             DVec4::new(0.0, 0.0, -2.0 / (far - near), 0.0),
             DVec4::new(0.0, 0.0, -(far + near) / (far - near), 1.0),
         ),
+        lens: None,
     }
 }
 

@@ -99,7 +99,7 @@ fn perspective(world_from_camera: DMat4, distance: f64) -> Camera {
         DVec4::new(0.0, 0.0, (near + far) / (near - far), -1.0),
         DVec4::new(0.0, 0.0, 2.0 * near * far / (near - far), 0.0),
     );
-    Camera { world_from_camera, clip_from_camera }
+    Camera { world_from_camera, clip_from_camera, lens: None }
 }
 
 #[cfg(test)]

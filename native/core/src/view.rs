@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec4, Vec4Swizzles};
 
-use crate::scene::{Camera, SceneError};
+use crate::scene::{Camera, Lens, SceneError};
 
 /// Axis-aligned box in render space.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +71,10 @@ pub struct View {
     pub far: f64,
     /// Direction towards the viewer and 1 (orthographic), or the origin and 0.
     pub viewer: Vec4,
+    /// What blurs the picture.
+    pub lens: Option<Lens>,
+    /// X and Y of camera space, in render space.
+    axes: [DVec3; 2],
 }
 
 impl View {
@@ -86,6 +90,7 @@ impl View {
         if camera.world_from_camera.determinant().abs() < 1e-30 {
             return Err(invalid("world_from_camera has no inverse"));
         }
+        camera.lens.map_or(Ok(()), |lens| lens.validate())?;
         let origin = camera.world_from_camera.w_axis.xyz();
         let mut camera_from_world = camera.world_from_camera;
         camera_from_world.w_axis = DVec4::W;
@@ -115,7 +120,26 @@ impl View {
             near,
             far: if far.is_finite() && far > near { far } else { f64::INFINITY },
             viewer: if orthographic { toward.as_vec3().extend(1.0) } else { Vec4::ZERO },
+            lens: camera.lens,
+            axes: [camera.world_from_camera.x_axis.xyz(), camera.world_from_camera.y_axis.xyz()],
         })
+    }
+
+    /// The view through one point of the lens, given in camera space: sheared, so that the plane in focus stays where it is.
+    pub fn through(&self, lens: &Lens, [x, y]: [f64; 2]) -> Self {
+        let [px, py, w, z] = self.rows;
+        // A point at depth z looks as if it were moved by -offset (1 - z / focus), which is 0 in focus.
+        let offset = self.axes[0] * x + self.axes[1] * y;
+        let away = z / lens.focus_distance - DVec4::W;
+        let shear = |row: DVec4| row + away * row.xyz().dot(offset);
+        let viewer = if self.orthographic {
+            let backward = self.viewer.xyz().as_dvec3();
+            let per_depth = backward / -z.xyz().dot(backward);
+            (per_depth * lens.focus_distance + offset).normalize().as_vec3().extend(1.0)
+        } else {
+            offset.as_vec3().extend(0.0)
+        };
+        Self { rows: [shear(px), shear(py), w, z], viewer, ..*self }
     }
 
     /// Pixel space of the frame, shifted so that the sample `jitter` off a pixel's centre lands on it.
@@ -169,7 +193,8 @@ mod tests {
             [0.3, -0.2, -1.002, 1.0],
         ]);
         [perspective, orthographic].map(|clip_from_camera| {
-            View::new(&Camera { world_from_camera, clip_from_camera }, SIZE).expect("a valid camera")
+            let camera = Camera { world_from_camera, clip_from_camera, lens: None };
+            View::new(&camera, SIZE).expect("a valid camera")
         })
     }
 
@@ -187,6 +212,26 @@ mod tests {
                         assert!((found - expected).abs() < 1e-9 * (1.0 + expected), "{found} instead of {expected}");
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn rays_through_a_lens_meet_where_it_is_in_focus() {
+        let lens = Lens { aperture_radius: 0.5, focus_distance: 6.0, blades: 0, rotation_rad: 0.0, ratio: 1.0 };
+        let at = [0.3, -0.2];
+        for view in views() {
+            let moved = view.through(&lens, at);
+            for pixel in [[160.0, 100.0], [17.0, 199.0]] {
+                let ((origin, direction), (other, turned)) = (view.ray(pixel), moved.ray(pixel));
+                assert!((origin + direction * 6.0).distance(other + turned * 6.0) < 1e-9);
+                // At depth 0 they start on the lens.
+                let expected = view.axes[0] * at[0] + view.axes[1] * at[1];
+                assert!((other - origin).distance(expected) < 1e-9, "{} for {expected}", other - origin);
+                // The ray runs away from the viewer.
+                let toward = moved.viewer.xyz().as_dvec3();
+                let along = if moved.orthographic { toward } else { (toward - (other + turned * 3.0)).normalize() };
+                assert!(along.dot(turned.normalize()) < -1.0 + 1e-6);
             }
         }
     }

@@ -8,7 +8,7 @@ use crate::device::Gpu;
 use crate::layout;
 use crate::lights::{self, LightSample};
 use crate::pipelines::{Bindings, Pipelines};
-use crate::sampling::{PixelFilter, r2, sphere};
+use crate::sampling::{PixelFilter, lens_pair, r2, sphere};
 use crate::shader::Pass;
 use crate::timing::Timer;
 use crate::upload::{Draws, SceneBuffers, empty_storage};
@@ -240,7 +240,6 @@ impl<'a> Recorder<'a> {
             input,
             frame,
             uniform: layout::Frame {
-                viewer: view.viewer,
                 pixels_per_unit: view.pixels_per_unit as f32,
                 depth_min: depth_min as f32,
                 depth_scale: (1.0 / (depth_max - depth_min)) as f32,
@@ -259,6 +258,7 @@ impl<'a> Recorder<'a> {
                 shadow_resolution: frame.capacity.shadow_resolution,
                 background,
                 opaque_background: u32::from(!settings.transparent),
+                cull_margin: 0.5 * settings.filter_width,
                 least_w: if view.orthographic { 1.0 } else { view.near as f32 },
                 ..Default::default()
             },
@@ -339,28 +339,37 @@ impl<'a> Recorder<'a> {
         Ok(image)
     }
 
-    /// One jittered sample of a tile.
+    /// One sample of a tile: jittered, and through a point of the lens. What can be seen through the whole lens would be culled by a wide
+    /// margin, which blurred foreground makes larger than the picture: with a lens, each sample culls for itself.
     fn sample(&mut self, tile: [u32; 4], index: u32) -> Result<(), Error> {
         let FrameInput { scene, settings, view, draws, .. } = *self.input;
         let [left, top, width, height] = tile;
-        let jitter = self.filter.offset(r2(index, settings.seed, 0));
+        let number = settings.first_sample.wrapping_add(index);
+        let jitter = if number == 0 { [0.0; 2] } else { self.filter.offset(r2(number, settings.seed, 0)) };
+        let seen = match &view.lens {
+            Some(lens) => view.through(lens, lens.point(lens_pair(number, settings.seed))),
+            None => *view,
+        };
         self.uniform.origin = [left, top];
         self.uniform.size = [width, height];
         self.uniform.core_parts = core_parts(self.input, width + height);
-        self.uniform.sample_index = index;
-        self.uniform.pixel_from_render = view.pixel_from_render(jitter);
+        self.uniform.sample_index = number;
+        self.uniform.first = u32::from(index == 0);
+        self.uniform.pixel_from_render = seen.pixel_from_render(jitter);
+        self.uniform.viewer = seen.viewer;
 
         let bounds = draws.bounds;
         let mut first_view_to_draw = 0;
         if !bounds.is_empty() {
             let resolution = self.frame.capacity.shadow_resolution;
-            let mut lights = LightSample::new(&scene.lights, view.origin, &bounds, resolution, index, settings.seed);
+            let mut lights = LightSample::new(&scene.lights, view.origin, &bounds, resolution, number, settings.seed);
             if self.static_lights {
                 first_view_to_draw = lights.views.len() as u32;
             }
             let sky_views = self.input.sky_views();
             (self.uniform.sky_view, self.uniform.sky_view_count) = (lights.views.len() as u32, sky_views);
-            for direction in index * sky_views..(index + 1) * sky_views {
+            for view in 0..sky_views {
+                let direction = number.wrapping_mul(sky_views).wrapping_add(view);
                 lights.add_sky(sphere(r2(direction, settings.seed, 1)), &bounds, resolution);
             }
             self.gpu.queue.write_buffer(&self.frame.lights, 0, bytemuck::cast_slice(&lights.lights));
@@ -371,11 +380,13 @@ impl<'a> Recorder<'a> {
         } else {
             self.write_uniform();
         }
-        self.visibility(index == 0, width, height);
+        let cull = index == 0 || view.lens.is_some();
+        self.visibility(cull, width, height);
         self.gpu.finish()?;
         self.timer.collect(self.gpu)?;
-        if index == 0 {
-            self.check_work()?;
+        if cull {
+            let fiber_segments = self.check_work()?;
+            self.fiber_segments += if index == 0 { fiber_segments } else { 0 };
         }
         Ok(())
     }
@@ -409,11 +420,11 @@ impl<'a> Recorder<'a> {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Cull and scan (once a tile: the jitter is inside of the margin), visibility, resolve.
-    fn visibility(&mut self, first: bool, width: u32, height: u32) {
+    /// Cull and scan if asked for, visibility, resolve.
+    fn visibility(&mut self, cull: bool, width: u32, height: u32) {
         let mut encoder = self.encoder();
         if self.uniform.segment_count > 0 {
-            if first {
+            if cull {
                 let (x, y) = fold(self.uniform.segment_count.div_ceil(BLOCK));
                 encoder.clear_buffer(&self.frame.dispatch, 0, None);
                 self.record(&mut encoder, Pass::Cull, |pass| pass.dispatch_workgroups(x, y, 1));
@@ -471,16 +482,16 @@ impl<'a> Recorder<'a> {
         Ok(data)
     }
 
-    fn check_work(&mut self) -> Result<(), Error> {
+    /// Fiber segments that the last cull has found.
+    fn check_work(&self) -> Result<u64, Error> {
         if self.uniform.segment_count == 0 {
-            return Ok(());
+            return Ok(0);
         }
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(&[(&self.frame.dispatch, 32)])?);
         if words[4] != 0 {
             return Err(Error::input("scene", "more than 4.29 billion fiber segments are visible in one picture"));
         }
-        self.fiber_segments += u64::from(words[5]);
-        Ok(())
+        Ok(u64::from(words[5]))
     }
 
     fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], image: &mut Image) -> Result<(), Error> {

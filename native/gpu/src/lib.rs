@@ -18,7 +18,7 @@ mod upload;
 pub use device::{AdapterInfo, adapters};
 pub use error::Error;
 pub use image::{Image, Statistics};
-pub use lisle_core::scene::{Camera, Cone, Light, Object, Scene, Shading};
+pub use lisle_core::scene::{Camera, Cone, Lens, Light, Object, Scene, Shading};
 pub use renderer::{Progress, Renderer};
 pub use scene::*;
 

@@ -37,6 +37,9 @@ pub struct Settings {
     pub shadow_resolution: u32,
     /// Seeds the sample sequence.
     pub seed: u32,
+    /// The number of the first sample in its sequence: a picture of samples 0 to 7 and one of 8 to 15 make, each with half the weight, one
+    /// of 0 to 15. (With fewer than 8 they take more directions of the sky each.) Sample 0 is taken at the pixel's centre, through the lens's centre.
+    pub first_sample: u32,
 }
 
 impl Settings {
@@ -60,6 +63,7 @@ impl Default for Settings {
             filter_width: 1.5,
             shadow_resolution: 2048,
             seed: 0,
+            first_sample: 0,
         }
     }
 }

@@ -5,6 +5,7 @@ from typing import Any, final
 import numpy as np
 import numpy.typing as npt
 
+from .camera import Camera
 from .lights import Light
 from .material import Material
 from .reference import Environment
@@ -146,7 +147,7 @@ class Renderer:
         objects: Sequence[Object],
         lights: Sequence[Light],
         ambient: tuple[float, float, float],
-        camera: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]],
+        camera: Camera,
         settings: Mapping[str, Any],
         progress: Callable[[float], bool | None] | None,
     ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]: ...
@@ -156,7 +157,7 @@ def fibers(
     yarn: Yarn,
     chord_error: float,
     object_id: int,
-    view: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], tuple[int, int], float] | None,
+    view: tuple[Camera, tuple[int, int], float] | None,
     progress: Callable[[float], bool | None] | None,
 ) -> list[npt.NDArray[Any]]: ...
 def reference(
@@ -164,7 +165,7 @@ def reference(
     lights: Sequence[Light],
     ambient: tuple[float, float, float],
     environment: Environment | None,
-    camera: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]],
+    camera: Camera,
     settings: Mapping[str, Any],
     checkpoint: Path | None,
     progress: Callable[[float], bool | None] | None,

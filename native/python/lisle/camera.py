@@ -17,23 +17,39 @@ FIT_ANGLE_RAD = 0.6
 FIT_MARGIN = 1.05
 """How much room a fitted camera leaves around the yarns, as a factor on their extent."""
 
+MOST_BLADES = 1000
+
 FIT_DEPTH = 100.0
 """Clip planes of a fitted camera: its distance divided and multiplied by this, so that animated yarns stay inside."""
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A viewpoint: perspective or orthographic, with or without lens shift, as two matrices.
+    """A viewpoint: perspective or orthographic, with or without lens shift, as two matrices, and a lens.
+
+    `dataclasses.replace(camera, aperture_radius=0.002, focus_distance=0.3)` is the same view through a lens that blurs
+    what is out of focus.
 
     Args:
         world_from_camera: 4×4, camera to world; the camera looks down its −Z, Y is up.
         clip_from_camera: 4×4, projection to OpenGL's clip space (z from −1 to 1).
         size: width and height of the picture, pixels.
+        aperture_radius: of the lens, to its corners if it has blades, in the unit of the scene; 0 for a pinhole, which
+            has everything in focus. A photographer's lens has half its focal length divided by its f-stop.
+        focus_distance: of the plane in focus, along the view axis.
+        blades: sides of a polygonal aperture; below 3 for a round one.
+        rotation_rad: turns the polygon counterclockwise. Without it a side lies to the right.
+        ratio: the aperture is this many times as high as it is wide, for the bokeh of an anamorphic lens.
     """
 
     world_from_camera: npt.NDArray[np.float64]
     clip_from_camera: npt.NDArray[np.float64]
     size: tuple[int, int]
+    aperture_radius: float = 0.0
+    focus_distance: float = 1.0
+    blades: int = 0
+    rotation_rad: float = 0.0
+    ratio: float = 1.0
 
     def __post_init__(self) -> None:
         for name in ("world_from_camera", "clip_from_camera"):
@@ -42,6 +58,15 @@ class Camera:
                 raise InputError(f"Camera.{name}: the matrix is singular")
             object.__setattr__(self, name, matrix)
         object.__setattr__(self, "size", arguments.pixels("Camera.size", self.size))
+        for name in ("aperture_radius", "focus_distance", "rotation_rad", "ratio"):
+            object.__setattr__(self, name, arguments.number(f"Camera.{name}", getattr(self, name)))
+        if self.aperture_radius < 0.0:
+            raise InputError(f"Camera.aperture_radius: {self.aperture_radius} is below 0")
+        for name in ("focus_distance", "ratio"):
+            if getattr(self, name) <= 0.0:
+                raise InputError(f"Camera.{name}: {getattr(self, name)} is not above 0")
+        if not 0 <= self.blades <= MOST_BLADES:
+            raise InputError(f"Camera.blades: {self.blades} is not from 0 to {MOST_BLADES}")
 
     @classmethod
     def from_matrices(

@@ -75,7 +75,7 @@ def fibers(
         lod_pixels = arguments.number("lod_pixels", lod_pixels)
         if not 0.0 < lod_pixels <= 100.0:
             raise InputError(f"lod_pixels: {lod_pixels} is not above 0 and at most 100 pixels")
-        view = (camera.world_from_camera, camera.clip_from_camera, camera.size, lod_pixels)
+        view = (camera, camera.size, lod_pixels)
     yarn = yarn or Yarn.preset(DEFAULT_YARN)
     return Fibers(*_native.fibers(yarns, yarn, chord_error, object_id, view, progress))
 
@@ -177,7 +177,7 @@ class Reference:
             scene.lights,
             scene.ambient,
             environment,
-            (scene.camera.world_from_camera, scene.camera.clip_from_camera),
+            scene.camera,
             {
                 "size": size,
                 "region": None if region is None else arguments.from_top_left(region, size),

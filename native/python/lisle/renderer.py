@@ -58,6 +58,7 @@ class Renderer:
         filter_width: float = 1.5,
         shadow_resolution: int = 2048,
         seed: int = 0,
+        first_sample: int = 0,
         progress: Progress | None = None,
     ) -> Image:
         """Draws yarns, or a scene.
@@ -81,6 +82,8 @@ class Renderer:
             filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
             shadow_resolution: texels along one side of a shadow map, 16 to 16384.
             seed: of the sample sequence.
+            first_sample: its number in that sequence: samples 0 to 7 and samples 8 to 15 are two halves of one picture of
+                16. Sample 0 is taken at the pixel's centre, through the lens's centre.
             progress: called now and then with the finished fraction; returning False cancels.
 
         Raises:
@@ -94,7 +97,7 @@ class Renderer:
             scene.objects,
             scene.lights,
             scene.ambient,
-            (scene.camera.world_from_camera, scene.camera.clip_from_camera),
+            scene.camera,
             {
                 "size": size,
                 "region": None if region is None else arguments.from_top_left(region, size),
@@ -107,6 +110,7 @@ class Renderer:
                 "filter_width": filter_width,
                 "shadow_resolution": shadow_resolution,
                 "seed": seed,
+                "first_sample": first_sample,
             },
             progress,
         )

@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 use crate::convert::{array, field_error};
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
-use crate::scene::{LightFields, ObjectFields, Rows, camera, scene, shading};
+use crate::scene::{CameraFields, LightFields, ObjectFields, scene, shading};
 use crate::yarn::extract_yarn;
 use crate::yarns::Yarns;
 
@@ -89,15 +89,14 @@ pub fn fibers<'py>(
     yarn: &Bound<'py, PyAny>,
     chord_error: f64,
     object_id: u32,
-    view: Option<(Rows, Rows, [u32; 2], f64)>,
+    view: Option<(CameraFields, [u32; 2], f64)>,
     progress: Option<Py<PyAny>>,
 ) -> Result<FiberArrays<'py>, Failure> {
     let yarn = extract_yarn(yarn)?;
     yarn.validate()?;
     let yarns = yarns.get().yarns.clone();
-    let detail = view.map(|(world_from_camera, clip_from_camera, size, lod_pixels)| {
-        let camera = camera((world_from_camera, clip_from_camera));
-        let view = View::new(&camera, size).map_err(lisle_reference::Error::from)?;
+    let detail = view.map(|(camera, size, lod_pixels)| {
+        let view = View::new(&camera.into(), size).map_err(lisle_reference::Error::from)?;
         Ok::<_, Failure>(Detail { view, lod_pixels })
     });
     let options = Options { chord_error, object_id, detail: detail.transpose()?, ..Options::default() };
@@ -120,7 +119,7 @@ pub fn reference<'py>(
     lights: Vec<LightFields>,
     ambient: [f32; 3],
     environment: Option<EnvironmentFields<'py>>,
-    camera: (Rows, Rows),
+    camera: CameraFields,
     settings: &Bound<'py, PyDict>,
     checkpoint: Option<PathBuf>,
     progress: Option<Py<PyAny>>,

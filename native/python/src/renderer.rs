@@ -10,7 +10,7 @@ use crate::adapter::Adapter;
 use crate::convert::{array, field_error};
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
-use crate::scene::{LightFields, ObjectFields, Rows, SettingsItems, scene};
+use crate::scene::{CameraFields, LightFields, ObjectFields, SettingsItems, scene};
 
 thread_local! {
     /// Whether this thread is in a render: a progress callback that drew again would wait for itself.
@@ -41,7 +41,7 @@ impl Renderer {
         objects: Vec<ObjectFields<'py>>,
         lights: Vec<LightFields>,
         ambient: [f32; 3],
-        camera: (Rows, Rows),
+        camera: CameraFields,
         settings: &Bound<'py, PyDict>,
         progress: Option<Py<PyAny>>,
     ) -> Result<(Bound<'py, PyDict>, Bound<'py, PyDict>), Failure> {

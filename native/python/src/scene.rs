@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
-use lisle_gpu::{Camera, Cone, Light, Object, Occlusion, Scene, Settings, Shading};
+use lisle_gpu::{Camera, Cone, Lens, Light, Object, Occlusion, Scene, Settings, Shading};
 use pyo3::prelude::*;
 
 use crate::error::Failure;
@@ -61,6 +61,7 @@ pub struct SettingsItems {
     filter_width: f32,
     shadow_resolution: u32,
     seed: u32,
+    first_sample: u32,
 }
 
 fn matrix(rows: Rows) -> DMat4 {
@@ -106,9 +107,28 @@ impl From<LightFields> for Light {
     }
 }
 
-/// A camera from its two matrices.
-pub fn camera((world_from_camera, clip_from_camera): (Rows, Rows)) -> Camera {
-    Camera { world_from_camera: matrix(world_from_camera), clip_from_camera: matrix(clip_from_camera) }
+/// `lisle.Camera`, by its attributes.
+#[derive(FromPyObject)]
+pub struct CameraFields {
+    world_from_camera: Rows,
+    clip_from_camera: Rows,
+    aperture_radius: f64,
+    focus_distance: f64,
+    blades: u32,
+    rotation_rad: f64,
+    ratio: f64,
+}
+
+impl From<CameraFields> for Camera {
+    fn from(fields: CameraFields) -> Self {
+        let CameraFields { aperture_radius, focus_distance, blades, rotation_rad, ratio, .. } = fields;
+        let lens = Lens { aperture_radius, focus_distance, blades, rotation_rad, ratio };
+        Self {
+            world_from_camera: matrix(fields.world_from_camera),
+            clip_from_camera: matrix(fields.clip_from_camera),
+            lens: (aperture_radius != 0.0).then_some(lens),
+        }
+    }
 }
 
 /// A scene, and how to draw it.
@@ -116,13 +136,13 @@ pub fn scene(
     objects: Vec<ObjectFields<'_>>,
     lights: Vec<LightFields>,
     ambient: [f32; 3],
-    camera: (Rows, Rows),
+    camera: CameraFields,
 ) -> Result<Scene, Failure> {
     Ok(Scene {
         objects: objects.into_iter().map(ObjectFields::object).collect::<Result<_, _>>()?,
         lights: lights.into_iter().map(Light::from).collect(),
         ambient: Vec3::from(ambient),
-        camera: self::camera(camera),
+        camera: camera.into(),
     })
 }
 
@@ -156,6 +176,7 @@ impl SettingsItems {
             filter_width: self.filter_width,
             shadow_resolution: self.shadow_resolution,
             seed: self.seed,
+            first_sample: self.first_sample,
         })
     }
 }

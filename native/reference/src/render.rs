@@ -102,7 +102,7 @@ impl Reference {
         let (x, y) = (left + place as u32 % width, top + place as u32 / width);
         let center = [f64::from(x) + 0.5, f64::from(y) + 0.5];
         if sample == 0 {
-            let met = self.meet(center);
+            let met = self.meet(&self.view, center);
             pixel.depth = met.as_ref().map_or(EMPTY_DEPTH, |(_, _, depth)| *depth);
             pixel.object_id = met.map_or(0, |(_, hit, _)| self.world.object_id(hit.segment));
         }
@@ -111,9 +111,13 @@ impl Reference {
         let mut random = Random::new(self.settings.seed, number, sample);
         let offset = self.filter.offset(random.pair());
         let place = [center[0] + offset[0], center[1] + offset[1]];
-        let Some((ray, hit, _)) = self.meet(place) else {
+        let view = match &self.view.lens {
+            Some(lens) => self.view.through(lens, lens.point(random.pair())),
+            None => self.view,
+        };
+        let Some((ray, hit, _)) = self.meet(&view, place) else {
             if !self.settings.transparent {
-                let radiance = self.world.background(self.view.ray(place).1.normalize()).to_array();
+                let radiance = self.world.background(view.ray(place).1.normalize()).to_array();
                 pixel.add(&Sample { radiance, alpha: 1.0, ..Sample::default() });
             }
             return;
@@ -127,14 +131,14 @@ impl Reference {
         });
     }
 
-    /// What the camera sees at a place on the frame: the ray, what it meets, and its depth.
-    fn meet(&self, place: [f64; 2]) -> Option<(Ray, Hit, f64)> {
-        let (at_zero, per_depth) = self.view.ray(place);
+    /// What a view shows at a place on the frame: the ray, what it meets, and its depth.
+    fn meet(&self, view: &View, place: [f64; 2]) -> Option<(Ray, Hit, f64)> {
+        let (at_zero, per_depth) = view.ray(place);
         let length = per_depth.length();
-        let near = self.view.near;
-        let origin = at_zero + per_depth * near + self.view.origin - self.world.origin;
+        let near = view.near;
+        let origin = at_zero + per_depth * near + view.origin - self.world.origin;
         let ray = Ray { origin, direction: per_depth / length };
-        let hit = self.world.assembly.nearest(&ray, (self.view.far - near) * length)?;
+        let hit = self.world.assembly.nearest(&ray, (view.far - near) * length)?;
         Some((ray, hit, near + hit.t / length))
     }
 }

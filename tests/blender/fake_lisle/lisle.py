@@ -120,13 +120,15 @@ class Material(_Values):
 
 
 class Camera:
-    @classmethod
-    def from_matrices(cls, world_from_camera, clip_from_camera, size):
-        camera = cls()
-        camera.world_from_camera, camera.clip_from_camera, camera.size = world_from_camera, clip_from_camera, size
+    def __init__(
+        self, world_from_camera, clip_from_camera, size, aperture_radius=0.0, focus_distance=1.0, blades=0,
+        rotation_rad=0.0, ratio=1.0,
+    ):  # fmt: skip
+        self.world_from_camera, self.clip_from_camera, self.size = world_from_camera, clip_from_camera, size
+        self.aperture_radius, self.focus_distance = aperture_radius, focus_distance
+        self.blades, self.rotation_rad, self.ratio = blades, rotation_rad, ratio
         for matrix in (world_from_camera, clip_from_camera):
             assert matrix.shape == (4, 4) and matrix.dtype == np.float64
-        return camera
 
 
 class _Light:

@@ -1,4 +1,4 @@
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
 use super::{hash_combine, unit_from_hash};
 use glam::DVec3;
@@ -19,6 +19,22 @@ pub fn r2(index: u32, seed: u32, dimension: u32) -> [f64; 2] {
     [(shift(0) + i / PLASTIC).fract(), (shift(1) + i / (PLASTIC * PLASTIC)).fract()]
 }
 
+/// Point `index` of the sequence for a lens: powers of the root of x³ = x² + 1, which are independent of those of [`r2`], so that places
+/// on the lens and on lights combine in all ways. Shifted by `seed`, but the first one is (½, ½) for every seed.
+pub fn lens_pair(index: u32, seed: u32) -> [f64; 2] {
+    const SUPERGOLDEN: f64 = 1.465_571_231_876_768;
+    /// Beside the dimensions of [`r2`].
+    const DIMENSION: u32 = 2;
+    if index == 0 {
+        return [0.5; 2];
+    }
+    let shift = |axis| {
+        if seed == 0 { 0.5 } else { unit_from_hash(hash_combine(hash_combine(seed, DIMENSION), axis)) }
+    };
+    let i = f64::from(index);
+    [(shift(0) + i / SUPERGOLDEN).fract(), (shift(1) + i / (SUPERGOLDEN * SUPERGOLDEN)).fract()]
+}
+
 /// A uniform direction.
 pub fn sphere([u, v]: [f64; 2]) -> DVec3 {
     let z = 1.0 - 2.0 * u;
@@ -32,6 +48,17 @@ pub fn disc([u, v]: [f64; 2]) -> [f64; 2] {
     [r * (TAU * v).cos(), r * (TAU * v).sin()]
 }
 
+/// The same, by a map that keeps neighbours together and (½, ½) at the centre [ShirleyChiu1997].
+pub fn concentric_disc(uniform: [f64; 2]) -> [f64; 2] {
+    let [x, y] = uniform.map(|u| 2.0 * u - 1.0);
+    if x == 0.0 && y == 0.0 {
+        return [0.0; 2];
+    }
+    let (r, angle) =
+        if x.abs() > y.abs() { (x, FRAC_PI_4 * (y / x)) } else { (y, 2.0 * FRAC_PI_4 - FRAC_PI_4 * (x / y)) };
+    [r * angle.cos(), r * angle.sin()]
+}
+
 /// Two unit vectors that complete `z` to a right-handed frame (Duff et al. 2017).
 pub fn basis(z: DVec3) -> (DVec3, DVec3) {
     z.any_orthonormal_pair()
@@ -40,6 +67,33 @@ pub fn basis(z: DVec3) -> (DVec3, DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_concentric_map_keeps_areas() {
+        let n = 4096;
+        let points: Vec<_> = (0..n).map(|i| concentric_disc(r2(i, 0, 0))).collect();
+        // A disc of half the radius has a quarter of the area; second moments are those of a disc.
+        let inner = points.iter().filter(|p| p[0].hypot(p[1]) < 0.5).count() as f64 / f64::from(n);
+        let square = points.iter().map(|p| p[0] * p[0]).sum::<f64>() / f64::from(n);
+        assert!((inner - 0.25).abs() < 0.005 && (square - 0.25).abs() < 0.002, "{inner} {square}");
+    }
+
+    /// The mean of (-1)^(half in which the lens is, and the light), which is 0 for sequences that are independent.
+    #[test]
+    fn lens_and_lights_combine_in_all_ways() {
+        let correlation = |lens: &dyn Fn(u32) -> [f64; 2]| {
+            let n = 4096;
+            let sign = |u: f64| if u < 0.5 { -1.0 } else { 1.0 };
+            let mut most = 0.0_f64;
+            for axes in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let sum: f64 = (0..n).map(|i| sign(lens(i)[axes.0]) * sign(r2(i, 5, 16)[axes.1])).sum();
+                most = most.max((sum / f64::from(n)).abs());
+            }
+            most
+        };
+        assert!(correlation(&|i| lens_pair(i, 5)) < 0.02, "{}", correlation(&|i| lens_pair(i, 5)));
+        assert!(correlation(&|i| r2(i, 5, 2)) > 0.1, "the test cannot fail");
+    }
 
     #[test]
     fn directions_cover_the_sphere() {

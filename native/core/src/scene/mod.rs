@@ -1,7 +1,9 @@
 //! What is drawn, whoever draws it: objects, lights, a camera. Plain data, checked when a picture begins.
 
+mod lens;
 mod light;
 
+pub use lens::Lens;
 pub use light::{Cone, Light};
 
 use std::sync::Arc;
@@ -30,13 +32,15 @@ pub struct Object {
     pub world_from_object: DMat4,
 }
 
-/// A camera: two matrices and nothing else.
+/// A camera: two matrices, and a lens if what is out of focus is blurred.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Camera to world; the camera looks down its −Z, Y is up.
     pub world_from_camera: DMat4,
     /// Projection to OpenGL clip space (z from −1 to 1), lens shift included.
     pub clip_from_camera: DMat4,
+    /// The lens; `None` for a pinhole.
+    pub lens: Option<Lens>,
 }
 
 /// A picture's content.

@@ -117,6 +117,7 @@ pub fn perspective(world_from_camera: DMat4, tangent: f64, size: [u32; 2], shift
             DVec4::new(2.0 * shift[0] / aspect, 2.0 * shift[1], (near + far) / (near - far), -1.0),
             DVec4::new(0.0, 0.0, 2.0 * near * far / (near - far), 0.0),
         ),
+        lens: None,
     }
 }
 
@@ -132,6 +133,7 @@ pub fn orthographic(world_from_camera: DMat4, height: f64, size: [u32; 2], shift
             DVec4::new(0.0, 0.0, -2.0 / (far - near), 0.0),
             DVec4::new(-2.0 * shift[0] / aspect, -2.0 * shift[1], -(far + near) / (far - near), 1.0),
         ),
+        lens: None,
     }
 }
 

@@ -85,6 +85,7 @@ pub fn orthographic(world_from_camera: DMat4, height: f64, size: [u32; 2]) -> Ca
             DVec4::new(0.0, 0.0, -2.0 / (far - near), 0.0),
             DVec4::new(0.0, 0.0, -(far + near) / (far - near), 1.0),
         ),
+        lens: None,
     }
 }
 
