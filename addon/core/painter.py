@@ -42,8 +42,8 @@ class Task:
     """Part to draw: (x0, y0, x1, y1) from the bottom left, end exclusive; not empty."""
     samples: int
     draw: Callable
-    """`draw(size, region, samples, first_sample, shadow_texels, go_on)` → (combined (h, w, 4), depth (h, w)), float32, top row
-    first. `go_on()` is asked now and then; draws nothing and raises Stopped once it says False."""
+    """`draw(size, region, samples, first_sample, shadow_texels, go_on)` → (combined (h, w, 4), depth (h, w)), float32,
+    top row first. `go_on()` is asked now and then; draws nothing and raises Stopped once it says False."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -33,7 +33,7 @@ def native_camera(lisle, camera, depsgraph, size):
 
 
 def lens_of(camera, depsgraph):
-    """What `lisle.Camera` takes to blur what is out of focus: nothing, if an evaluated camera object has no depth of field.
+    """What `lisle.Camera` takes to blur what an evaluated camera object has out of focus; nothing for a pinhole.
 
     As Cycles has it: the f-stop divides the focal length, or one metre for an orthographic camera.
     """

@@ -26,8 +26,14 @@ struct Frame {
     first: u32,
     // Pixels around the tile within which samples may see what the culled one does not.
     cull_margin: f32,
-    padding_3: u32,
-    padding_4: u32,
+    // First planes of further passes.
+    plane_position: u32,
+    plane_uv: u32,
+    plane_vector: u32,
+    plane_matte: u32,
+    plane_albedo: u32,
+    // Where among the vector's words a neighbouring frame writes.
+    neighbour_word: u32,
     lod_pixels: f32,
     light_count: u32,
     physical: u32,
@@ -83,6 +89,8 @@ struct Curve {
     // Periods after which a closed curve repeats; 0 for an open one.
     closed_periods: u32,
     seed: u32,
+    // Object space.
+    rest_length: f32,
 }
 
 // A procedural yarn. Lengths are in units of its outer radius unless they are relative to the ply's half axes.

@@ -11,6 +11,13 @@ fn unpack_unit_vector(packed: u32) -> vec3f {
     return normalize(v);
 }
 
+// The same backwards, from a vector of any length but 0.
+fn pack_unit_vector(vector: vec3f) -> u32 {
+    let v = vector / (abs(vector.x) + abs(vector.y) + abs(vector.z));
+    let folded = (1.0 - abs(v.yx)) * select(vec2f(-1.0), vec2f(1.0), v.xy >= vec2f(0.0));
+    return pack2x16snorm(select(v.xy, folded, v.z < 0.0));
+}
+
 // A colour of three mantissas of 9 bits and one exponent; native/gpu/src/tables.rs packs it.
 fn shared_exponent(word: u32) -> vec3f {
     let mantissas = vec3f(vec3u(word, word >> 9u, word >> 18u) & vec3u(511u));

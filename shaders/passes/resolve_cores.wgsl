@@ -3,7 +3,8 @@
 
 @group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
 
-fn core_surface(s: Segment, yarn: Yarn, ply: u32, step: u32, pixel: vec2u) -> Surface {
+fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u) -> Surface {
+    let step = parts.place;
     let scale = scale_of(yarn, s);
     let steps = core_steps(yarn, s, scale.radius_pixels);
     let t0 = f32(step - 1u) / f32(steps);
@@ -25,7 +26,7 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, step: u32, pixel: vec2u) -> Su
     let view = direction_to_viewer(frame.viewer, c.center);
     let normal = fiber_normal(tangent, c.side, view, surface.offset);
     let position = c.center + c.side * dot(offset, c.side) + view * core_nearness(c, offset, view);
-    return Surface(Tube(p.position, p.radius, p.tangent), c.ply.radial, c.ply.tangential, position, tangent, normal);
+    return Surface(Tube(p.position, p.radius, p.tangent), c.ply.radial, c.ply.tangential, position, tangent, normal, parts.segment, t);
 }
 
 @compute @workgroup_size(64)
@@ -40,5 +41,5 @@ fn resolve_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocat
     let winner = winner_at(index);
     let yarn = yarns[draws[winner.draw].yarn];
     let s = segment_at(winner.draw, winner.parts.segment);
-    add_surface(index, winner.draw, core_surface(s, yarn, winner.ply, winner.parts.place, pixel));
+    add_surface(index, winner.draw, core_surface(s, yarn, winner.ply, winner.parts, pixel));
 }

@@ -21,8 +21,8 @@ fn to_chord(f: FiberPoint, t: f32, steps: u32) -> vec3f {
     return f.acceleration * (0.5 * in_step * (1.0 - in_step) / f32(steps * steps));
 }
 
-fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel: vec2f) -> Surface {
-    let t = f32(place) / place_scale();
+fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, parts: KeyParts, pixel: vec2f) -> Surface {
+    let t = f32(parts.place) / place_scale();
     let p = yarn_point(s, t);
     let q = ply_point(yarn, s, p, ply);
     let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), index));
@@ -54,7 +54,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, place: u32, pixel
     let sine = length(side);
     let outward = side * (select(-1.0, 1.0, grows) * x / max(sine, 1e-6));
     let position = center + radius * (outward + view * (sqrt(1.0 - x * x) * min(1.0 / max(sine, 1e-6), MOST_LEAN)));
-    return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, position, tangent, normal);
+    return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, position, tangent, normal, parts.segment, t);
 }
 
 @compute @workgroup_size(64)
@@ -69,5 +69,5 @@ fn resolve_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invoca
     let winner = winner_at(index);
     let yarn = yarns[draws[winner.draw].yarn];
     let s = segment_at(winner.draw, winner.parts.segment);
-    add_surface(index, winner.draw, fiber_surface(s, yarn, winner.ply, winner.slot - 1u, winner.parts.place, vec2f(pixel) + 0.5));
+    add_surface(index, winner.draw, fiber_surface(s, yarn, winner.ply, winner.slot - 1u, winner.parts, vec2f(pixel) + 0.5));
 }

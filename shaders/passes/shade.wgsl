@@ -8,6 +8,9 @@ struct Surface {
     position: vec3f,
     tangent: vec3f,
     normal: vec3f,
+    // Where on its yarn: the segment, and the parameter along it.
+    segment: u32,
+    t: f32,
 }
 
 // The normal of a round fiber seen at `offset` (-1 … 1) across it; `side` points where the offset grows.
@@ -183,4 +186,5 @@ fn add_surface(index: u32, draw: u32, surface: Surface) {
     let depth = to_pixel(frame.pixel_from_render, surface.position).w;
     let color = vec4f(shade(draw, surface), 1.0);
     add_sample(index, color, surface.normal, surface.tangent, depth, f32(draw + 1u));
+    add_aovs(index, draw, surface);
 }

@@ -197,8 +197,9 @@ def test_a_scene_has_its_own_lights(renderer, camera, swatch):
     scene.add(swatch)
     with pytest.raises(lisle.InputError, match="lights: the scene has its own"):
         renderer.render(scene, lights=[])
-    with pytest.raises(lisle.InputError, match="got list"):
-        renderer.render([swatch])
+    for what, found in ((3, "int"), ([3], "int"), ([], "list")):
+        with pytest.raises(lisle.InputError, match=f"got {found}"):
+            renderer.render(what)
 
 
 def test_an_unknown_adapter_is_refused_with_the_known_ones():

@@ -24,6 +24,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: Yarn) -> Object {
         yarn: Arc::new(yarn),
         material: Arc::new(Material::preset("cotton").expect("a preset of the core")),
         world_from_object: DMat4::IDENTITY,
+        labels: Default::default(),
     }
 }
 

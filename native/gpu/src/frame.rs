@@ -2,18 +2,20 @@
 
 use std::ops::ControlFlow;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
+use crate::aov::{self, NEIGHBOUR_WORDS, Planes};
+use crate::cryptomatte;
 use crate::device::Gpu;
 use crate::layout;
 use crate::lights::{self, LightSample};
+use crate::motion::{Moment, Motion, Neighbour};
 use crate::pipelines::{Bindings, Pipelines};
-use crate::sampling::{PixelFilter, lens_pair, r2, sphere};
-use crate::shader::Pass;
+use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
+use crate::shader::{Film, Pass};
 use crate::timing::Timer;
 use crate::upload::{Draws, SceneBuffers, empty_storage};
-use crate::view::View;
-use crate::{Error, Image, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics};
+use crate::{Aov, Error, Image, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
 const BLOCK: u32 = 256;
@@ -34,9 +36,11 @@ const DEPTH_BITS: std::ops::RangeInclusive<u32> = 18..=24;
 pub(crate) struct FrameInput<'a> {
     pub scene: &'a Scene,
     pub settings: &'a Settings,
-    pub view: &'a View,
-    pub draws: &'a Draws,
+    pub planes: Planes,
     pub buffers: &'a SceneBuffers,
+    pub motion: &'a Motion<'a>,
+    /// The frames before and after, if the vector pass is drawn.
+    pub neighbours: Option<&'a [Neighbour; 2]>,
 }
 
 impl FrameInput<'_> {
@@ -62,13 +66,16 @@ pub(crate) struct FrameBuffers {
     lights: wgpu::Buffer,
     views: wgpu::Buffer,
     shadow_depths: wgpu::Buffer,
+    aovs: wgpu::Buffer,
     uniform: wgpu::Buffer,
-    shadow_uniform: wgpu::Buffer,
+    /// Of the passes that need a few numbers more.
+    pass_uniform: wgpu::Buffer,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Capacity {
     pixels: u64,
+    planes: u64,
     segments: u64,
     draws: u64,
     lights: u64,
@@ -76,10 +83,10 @@ struct Capacity {
     shadow_resolution: u32,
 }
 
-/// Rectangles of at most [`TILE_PIXELS`] that cover a region: left, top, width, height.
-fn tiles([left, top, width, height]: [u32; 4]) -> Vec<[u32; 4]> {
+/// Rectangles of at most so many pixels, 2048 or more, that cover a region: left, top, width, height.
+fn tiles([left, top, width, height]: [u32; 4], most: u64) -> Vec<[u32; 4]> {
     let tile_width = width.min(2048);
-    let tile_height = height.min((TILE_PIXELS / u64::from(tile_width)) as u32);
+    let tile_height = height.min((most / u64::from(tile_width)) as u32);
     let mut tiles = Vec::new();
     for y in (0..height).step_by(tile_height as usize) {
         for x in (0..width).step_by(tile_width as usize) {
@@ -95,16 +102,26 @@ fn bits_for(count: u32) -> u32 {
 
 impl FrameBuffers {
     /// Buffers for a picture: the kept ones if they fit.
-    pub fn fit(gpu: &Gpu, kept: Option<Self>, input: &FrameInput, region: [u32; 4]) -> Result<Self, Error> {
+    pub fn fit(
+        gpu: &Gpu,
+        kept: Option<Self>,
+        input: &FrameInput,
+        draws: &Draws,
+        region: [u32; 4],
+    ) -> Result<Self, Error> {
         let views = u64::from(lights::most_views(&input.scene.lights, input.sky_views()));
         // As many texels as one binding holds.
         let most_texels = gpu.limits.max_storage_buffer_binding_size / 4 / views.max(1);
         let shadow_resolution = input.settings.shadow_resolution.min(most_texels.isqrt() as u32);
-        let largest = tiles(region).into_iter().map(|[_, _, w, h]| u64::from(w) * u64::from(h)).max();
+        let largest = tiles(region, tile_pixels(gpu, &input.planes))
+            .into_iter()
+            .map(|[_, _, w, h]| u64::from(w) * u64::from(h))
+            .max();
         let capacity = Capacity {
             pixels: largest.unwrap_or(0),
-            segments: u64::from(input.draws.segment_count),
-            draws: input.draws.items.len() as u64,
+            planes: u64::from(input.planes.count),
+            segments: u64::from(draws.segment_count),
+            draws: draws.items.len() as u64,
             lights: input.scene.lights.len() as u64,
             views,
             shadow_resolution,
@@ -128,7 +145,7 @@ impl FrameBuffers {
             resolve_dispatch: empty_storage(gpu, "dispatch of the resolve", 32)?,
             staging: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("read-back"),
-                size: 48 * capacity.pixels,
+                size: 4 * capacity.planes.max(12) * capacity.pixels,
                 usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
@@ -140,7 +157,8 @@ impl FrameBuffers {
             views: empty_storage(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
             shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
             uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::STORAGE),
-            shadow_uniform: uniform("shadow pass", 16, wgpu::BufferUsages::UNIFORM),
+            pass_uniform: uniform("pass", 16, wgpu::BufferUsages::UNIFORM),
+            aovs: empty_storage(gpu, "passes", 4 * capacity.planes * capacity.pixels)?,
             capacity,
         })
     }
@@ -157,6 +175,7 @@ impl FrameBuffers {
             &self.lights,
             &self.views,
             &self.shadow_depths,
+            &self.aovs,
         ]
         .map(wgpu::Buffer::size)
         .iter()
@@ -181,13 +200,13 @@ fn parts(length: f64, width: f64, steps: f64, most: f64) -> u32 {
 }
 
 /// Threads that share a segment's cores: they are drawn while a fiber is thinner than the level of detail's threshold.
-fn core_parts(input: &FrameInput, most: u32) -> u32 {
+fn core_parts(input: &FrameInput, draws: &Draws, most: u32) -> u32 {
     let of = |object: &Object| {
         let yarn = &object.yarn;
         let radius = f64::from(input.settings.lod_pixels) * yarn.outer_radius() / (2.0 * yarn.fiber_radius);
         let width = 2.2 * yarn.ellipse_long.max(yarn.ellipse_short) / yarn.outer_radius() * radius + 2.0;
         let plies = f64::from(yarn.plies);
-        parts(plies * input.draws.slenderness * radius, width, 16.0 * plies, 2.0 * plies * f64::from(most))
+        parts(plies * draws.slenderness * radius, width, 16.0 * plies, 2.0 * plies * f64::from(most))
     };
     input.scene.objects.iter().map(of).max().unwrap_or(1)
 }
@@ -210,6 +229,10 @@ pub(crate) struct Recorder<'a> {
     /// Lights whose shadows are already drawn and stay.
     static_lights: bool,
     fiber_segments: u64,
+    /// What the sample sees.
+    moment: Moment,
+    /// Of the render space of the first sample.
+    first_origin: DVec3,
 }
 
 impl<'a> Recorder<'a> {
@@ -218,8 +241,10 @@ impl<'a> Recorder<'a> {
         pipelines: &'a Pipelines,
         input: &'a FrameInput<'a>,
         frame: &'a FrameBuffers,
+        moment: Moment,
     ) -> Result<Self, Error> {
-        let FrameInput { scene, settings, view, draws, .. } = input;
+        let FrameInput { scene, settings, planes, .. } = input;
+        let draws = &moment.draws;
         let slot_bits = bits_for(draws.most_slots);
         let depth_bits = (64 - PLACE_BITS - slot_bits - bits_for(draws.segment_count)).min(*DEPTH_BITS.end());
         if depth_bits < *DEPTH_BITS.start() {
@@ -231,19 +256,13 @@ impl<'a> Recorder<'a> {
                 ),
             ));
         }
-        let (depth_min, depth_max) = if draws.bounds.is_empty() { (0.0, 1.0) } else { view.depth_range(&draws.bounds) };
         let background = scene.ambient;
-        gpu.queue.write_buffer(&frame.draws, 0, bytemuck::cast_slice(&draws.items));
-        Ok(Self {
+        let mut recorder = Self {
             gpu,
             pipelines,
             input,
             frame,
             uniform: layout::Frame {
-                pixels_per_unit: view.pixels_per_unit as f32,
-                depth_min: depth_min as f32,
-                depth_scale: (1.0 / (depth_max - depth_min)) as f32,
-                near: view.near as f32,
                 segment_count: draws.segment_count,
                 draw_count: draws.items.len() as u32,
                 slot_bits,
@@ -259,14 +278,64 @@ impl<'a> Recorder<'a> {
                 background,
                 opaque_background: u32::from(!settings.transparent),
                 cull_margin: 0.5 * settings.filter_width,
-                least_w: if view.orthographic { 1.0 } else { view.near as f32 },
+                plane_position: planes.position,
+                plane_uv: planes.uv,
+                plane_vector: planes.vector,
+                plane_matte: planes.matte,
+                plane_albedo: planes.albedo,
                 ..Default::default()
             },
             filter: PixelFilter::new(settings.filter_width),
             timer: Timer::new(gpu),
             static_lights: false,
             fiber_segments: 0,
-        })
+            first_origin: moment.view.origin,
+            moment: moment.clone(),
+        };
+        recorder.see(moment);
+        Ok(recorder)
+    }
+
+    /// From now on samples see that.
+    fn see(&mut self, moment: Moment) {
+        let Moment { view, draws } = &moment;
+        let (depth_min, depth_max) = if draws.bounds.is_empty() { (0.0, 1.0) } else { view.depth_range(&draws.bounds) };
+        self.gpu.queue.write_buffer(&self.frame.draws, 0, bytemuck::cast_slice(&draws.items));
+        self.uniform = layout::Frame {
+            pixels_per_unit: view.pixels_per_unit as f32,
+            depth_min: depth_min as f32,
+            depth_scale: (1.0 / (depth_max - depth_min)) as f32,
+            near: view.near as f32,
+            least_w: if view.orthographic { 1.0 } else { view.near as f32 },
+            ..self.uniform
+        };
+        self.moment = moment;
+    }
+
+    /// Moves knots and camera to the time of a sample.
+    fn move_to(&mut self, time: f64) -> Result<(), Error> {
+        let FrameInput { motion, buffers, .. } = *self.input;
+        self.see(motion.at(buffers, time)?);
+        let (step, share) = motion.step(time);
+        if let Some([earlier, later]) = motion.shapes.get(step..step + 2) {
+            let knots = buffers.knot_count();
+            let numbers = [knots, (share as f32).to_bits(), 0, 0];
+            self.gpu.queue.write_buffer(&self.frame.pass_uniform, 0, bytemuck::cast_slice(&numbers));
+            let mut encoder = self.encoder();
+            let (x, y) = fold(knots.div_ceil(LANES));
+            let bound = [
+                (41, &earlier.positions),
+                (42, &later.positions),
+                (43, &earlier.frames),
+                (44, &later.frames),
+                (45, &buffers.shape.positions),
+                (46, &buffers.shape.frames),
+            ];
+            self.record_with(&mut encoder, Pass::MoveKnots, &bound, |pass| pass.dispatch_workgroups(x, y, 1));
+            self.timer.resolve(&mut encoder);
+            self.gpu.queue.submit([encoder.finish()]);
+        }
+        Ok(())
     }
 
     fn bindings(&self) -> Bindings<'a> {
@@ -275,8 +344,8 @@ impl<'a> Recorder<'a> {
             (0, &frame.uniform),
             (1, &frame.draws),
             (2, &scene.curves),
-            (3, &scene.positions),
-            (4, &scene.frames),
+            (3, &scene.shape.positions),
+            (4, &scene.shape.frames),
             (5, &scene.radii),
             (6, &scene.yarns),
             (7, &scene.material_data),
@@ -288,12 +357,13 @@ impl<'a> Recorder<'a> {
             (13, &frame.block_work),
             (14, &frame.dispatch),
             (15, &frame.keys),
-            (16, &frame.shadow_uniform),
+            (16, &frame.pass_uniform),
             (17, &frame.film[0]),
             (18, &frame.film[1]),
             (19, &frame.film[2]),
             (20, &frame.pixel_list),
             (21, &frame.resolve_dispatch),
+            (40, &frame.aovs),
         ])
     }
 
@@ -312,9 +382,12 @@ impl<'a> Recorder<'a> {
             normal: vec![[0.0; 3]; count],
             tangent: vec![[0.0; 3]; count],
             object_id: vec![0; count],
+            aovs: Vec::new(),
             statistics: Statistics::default(),
         };
-        let tiles = tiles(region);
+        let wanted = &self.input.settings.aovs;
+        image.aovs = wanted.iter().map(|aov| (*aov, vec![0.0; aov.channels() * count])).collect();
+        let tiles = tiles(region, tile_pixels(self.gpu, &self.input.planes));
         let samples = self.input.settings.samples;
         let total = samples.saturating_mul(tiles.len() as u32);
         for (number, tile) in tiles.iter().enumerate() {
@@ -329,7 +402,7 @@ impl<'a> Recorder<'a> {
         }
         image.statistics = Statistics {
             adapter: self.gpu.info.name.clone(),
-            segments: self.input.draws.real_segments,
+            segments: self.moment.draws.real_segments,
             fiber_segments: self.fiber_segments,
             knot_bytes: self.input.buffers.knot_bytes() + self.frame.segment_work.size(),
             gpu_bytes: self.input.buffers.knot_bytes() + self.input.buffers.table_bytes() + self.frame.bytes(),
@@ -342,23 +415,30 @@ impl<'a> Recorder<'a> {
     /// One sample of a tile: jittered, and through a point of the lens. What can be seen through the whole lens would be culled by a wide
     /// margin, which blurred foreground makes larger than the picture: with a lens, each sample culls for itself.
     fn sample(&mut self, tile: [u32; 4], index: u32) -> Result<(), Error> {
-        let FrameInput { scene, settings, view, draws, .. } = *self.input;
+        let FrameInput { scene, settings, motion, .. } = *self.input;
         let [left, top, width, height] = tile;
         let number = settings.first_sample.wrapping_add(index);
+        if motion.is_moving() {
+            self.move_to(sampling::time(number, settings.seed))?;
+        }
+        let view = self.moment.view;
+        if index == 0 {
+            self.first_origin = view.origin;
+        }
         let jitter = if number == 0 { [0.0; 2] } else { self.filter.offset(r2(number, settings.seed, 0)) };
         let seen = match &view.lens {
             Some(lens) => view.through(lens, lens.point(lens_pair(number, settings.seed))),
-            None => *view,
+            None => view,
         };
         self.uniform.origin = [left, top];
         self.uniform.size = [width, height];
-        self.uniform.core_parts = core_parts(self.input, width + height);
+        self.uniform.core_parts = core_parts(self.input, &self.moment.draws, width + height);
         self.uniform.sample_index = number;
         self.uniform.first = u32::from(index == 0);
         self.uniform.pixel_from_render = seen.pixel_from_render(jitter);
         self.uniform.viewer = seen.viewer;
 
-        let bounds = draws.bounds;
+        let bounds = self.moment.draws.bounds;
         let mut first_view_to_draw = 0;
         if !bounds.is_empty() {
             let resolution = self.frame.capacity.shadow_resolution;
@@ -376,12 +456,17 @@ impl<'a> Recorder<'a> {
             self.gpu.queue.write_buffer(&self.frame.views, 0, bytemuck::cast_slice(&lights.views));
             self.write_uniform();
             self.shadows(&lights.views[first_view_to_draw as usize..], first_view_to_draw);
-            self.static_lights = !scene.lights.iter().any(lights::is_soft);
+            self.static_lights = !motion.is_moving() && !scene.lights.iter().any(lights::is_soft);
         } else {
             self.write_uniform();
         }
-        let cull = index == 0 || view.lens.is_some();
+        let cull = index == 0 || view.lens.is_some() || motion.is_moving();
         self.visibility(cull, width, height);
+        if index == 0
+            && let Some(neighbours) = self.input.neighbours
+        {
+            self.follow(neighbours, width * height);
+        }
         self.gpu.finish()?;
         self.timer.collect(self.gpu)?;
         if cull {
@@ -406,11 +491,11 @@ impl<'a> Recorder<'a> {
             return;
         }
         let resolution = f64::from(self.frame.capacity.shadow_resolution);
-        let draws = self.input.draws;
+        let draws = &self.moment.draws;
         let radius = |view: &layout::ShadowView| draws.radius_max * f64::from(view.texels_per_unit) / nearest_w(view);
         let radius = views.iter().map(radius).fold(0.0, f64::max).min(resolution);
         let parts = parts(draws.slenderness * radius, 2.0 * radius + 2.0, 8.0, 2.0 * resolution);
-        self.gpu.queue.write_buffer(&self.frame.shadow_uniform, 0, bytemuck::cast_slice(&[first, parts, 0, 0]));
+        self.gpu.queue.write_buffer(&self.frame.pass_uniform, 0, bytemuck::cast_slice(&[first, parts, 0, 0]));
         let mut encoder = self.encoder();
         let bytes = 4 * u64::from(self.frame.capacity.shadow_resolution).pow(2);
         encoder.clear_buffer(&self.frame.shadow_depths, bytes * u64::from(first), Some(bytes * u64::from(count)));
@@ -442,16 +527,43 @@ impl<'a> Recorder<'a> {
             encoder.clear_buffer(&self.frame.keys, 0, None);
         }
         encoder.clear_buffer(&self.frame.resolve_dispatch, 0, None);
+        let film = if self.input.planes.count > 0 { Film::Aovs } else { Film::Plain };
+        if film == Film::Aovs && self.uniform.first == 1 {
+            encoder.clear_buffer(&self.frame.aovs, 0, None);
+        }
         let (x, y) = fold((width * height).div_ceil(LANES));
         self.record(&mut encoder, Pass::Classify, |pass| pass.dispatch_workgroups(x, y, 1));
         if self.uniform.segment_count > 0 {
             let arguments = &self.frame.resolve_dispatch;
             self.record(&mut encoder, Pass::SizeLists, |pass| pass.dispatch_workgroups(1, 1, 1));
-            self.record(&mut encoder, Pass::ResolveFibers, |pass| pass.dispatch_workgroups_indirect(arguments, 0));
-            self.record(&mut encoder, Pass::ResolveCores, |pass| pass.dispatch_workgroups_indirect(arguments, 16));
+            self.record(&mut encoder, Pass::ResolveFibers(film), |pass| {
+                pass.dispatch_workgroups_indirect(arguments, 0)
+            });
+            self.record(&mut encoder, Pass::ResolveCores(film), |pass| {
+                pass.dispatch_workgroups_indirect(arguments, 16)
+            });
         }
         self.timer.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Where the points of the first sample are in the frames before and after.
+    fn follow(&mut self, neighbours: &'a [Neighbour; 2], pixels: u32) {
+        let kept = self.uniform;
+        for (neighbour, word) in neighbours.iter().zip(NEIGHBOUR_WORDS) {
+            let view = &neighbour.moment.view;
+            self.uniform.pixel_from_render = view.pixel_from_render([0.0; 2]);
+            self.uniform.near = view.near as f32;
+            self.uniform.neighbour_word = word;
+            self.write_uniform();
+            let mut encoder = self.encoder();
+            let bound = [(1, &neighbour.draws), (3, &neighbour.shape.positions), (4, &neighbour.shape.frames)];
+            let (x, y) = fold(pixels.div_ceil(LANES));
+            self.record_with(&mut encoder, Pass::Follow, &bound, |pass| pass.dispatch_workgroups(x, y, 1));
+            self.timer.resolve(&mut encoder);
+            self.gpu.queue.submit([encoder.finish()]);
+        }
+        self.uniform = kept;
     }
 
     fn record(
@@ -460,7 +572,19 @@ impl<'a> Recorder<'a> {
         pass: Pass,
         dispatch: impl FnOnce(&mut wgpu::ComputePass),
     ) {
-        let (bindings, gpu, pipelines) = (self.bindings(), self.gpu, self.pipelines);
+        self.record_with(encoder, pass, &[], dispatch);
+    }
+
+    /// The same with some buffers in place of the usual ones.
+    fn record_with(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: Pass,
+        bound: &[(u32, &wgpu::Buffer)],
+        dispatch: impl FnOnce(&mut wgpu::ComputePass),
+    ) {
+        let (mut bindings, gpu, pipelines) = (self.bindings(), self.gpu, self.pipelines);
+        bindings.extend(bound.iter().copied());
         let timestamps = self.timer.begin(pass.entry_point());
         pipelines.record(gpu, encoder, pass, &bindings, timestamps, dispatch);
     }
@@ -494,6 +618,13 @@ impl<'a> Recorder<'a> {
         Ok(u64::from(words[5]))
     }
 
+    /// Ids of all draws in the mattes: by object, by material.
+    fn matte_ids(&self) -> [Vec<f32>; 2] {
+        let objects = &self.input.scene.objects;
+        let id = |name: &str| cryptomatte::id(cryptomatte::hash(name));
+        [objects.iter().map(|o| id(&o.name)).collect(), objects.iter().map(|o| id(&o.labels.material)).collect()]
+    }
+
     fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], image: &mut Image) -> Result<(), Error> {
         let [left, top, width, height] = tile;
         let pixels = width as usize * height as usize;
@@ -503,7 +634,16 @@ impl<'a> Recorder<'a> {
         let values: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&data);
         let (color, rest) = values.split_at(pixels);
         let (normal, tangent) = rest.split_at(pixels);
-        let scale = 1.0 / self.input.settings.samples as f32;
+        let words: Vec<u32> = match self.input.planes.count {
+            0 => Vec::new(),
+            count => {
+                bytemuck::pod_collect_to_vec(&self.read(&[(&self.frame.aovs, 4 * u64::from(count) * pixels as u64)])?)
+            }
+        };
+        let planes = aov::Tile { planes: self.input.planes, words: &words, pixels };
+        let ids = self.matte_ids();
+        let samples = self.input.settings.samples;
+        let scale = 1.0 / samples as f32;
         let direction = |v: [f32; 4]| {
             // Background samples pull the mean towards zero; its direction is that of the surface.
             Vec3::new(v[0], v[1], v[2]).normalize_or_zero().to_array()
@@ -516,14 +656,49 @@ impl<'a> Recorder<'a> {
                 image.depth[to] = normal[from][3];
                 image.normal[to] = direction(normal[from]);
                 image.tangent[to] = direction(tangent[from]);
-                image.object_id[to] = match tangent[from][3] as usize {
-                    0 => 0,
-                    draw => self.input.scene.objects[draw - 1].id,
-                };
+                let object = (tangent[from][3] as usize).checked_sub(1).map(|draw| &self.input.scene.objects[draw]);
+                image.object_id[to] = object.map_or(0, |object| object.id);
+                for (aov, values) in &mut image.aovs {
+                    let matte = |ids: &[f32]| {
+                        let found = planes.matte(from).map(|(draw, count)| (ids[draw as usize - 1], count));
+                        cryptomatte::ranks(found, samples)
+                    };
+                    let value = &mut values[aov.channels() * to..][..aov.channels()];
+                    match aov {
+                        Aov::Position if object.is_some() => {
+                            let render = planes.values::<3>(planes.planes.position, from);
+                            let world = self.first_origin + Vec3::from(render).as_dvec3();
+                            value.copy_from_slice(&world.as_vec3().to_array());
+                        }
+                        Aov::Position => {}
+                        Aov::Uv => value.copy_from_slice(&planes.values::<2>(planes.planes.uv, from)),
+                        Aov::Vector => value.copy_from_slice(&planes.vector(from)),
+                        Aov::ObjectIndex => value[0] = object.map_or(0.0, |object| object.labels.index as f32),
+                        Aov::MaterialIndex => {
+                            value[0] = object.map_or(0.0, |object| object.labels.material_index as f32)
+                        }
+                        Aov::CryptoObject => value.copy_from_slice(&matte(&ids[0])),
+                        Aov::CryptoMaterial => value.copy_from_slice(&matte(&ids[1])),
+                        Aov::Albedo => {
+                            let sum = planes.values::<3>(planes.planes.albedo, from);
+                            value.copy_from_slice(&sum.map(|c| c * scale));
+                        }
+                        Aov::DenoisingNormal => {
+                            let [x, y, z, _] = normal[from];
+                            value.copy_from_slice(&[x, y, z].map(|c| c * scale));
+                        }
+                    }
+                }
             }
         }
         Ok(())
     }
+}
+
+/// Most pixels of a tile, so that one binding holds all planes.
+fn tile_pixels(gpu: &Gpu, planes: &Planes) -> u64 {
+    let most = gpu.limits.max_storage_buffer_binding_size / (4 * u64::from(planes.count.max(1)));
+    most.clamp(2048, TILE_PIXELS)
 }
 
 #[cfg(test)]
@@ -534,7 +709,7 @@ mod tests {
     fn tiles_cover_a_region_once() {
         let region = [3, 5, 5000, 4100];
         let mut seen = vec![0_u8; 5000 * 4100];
-        for [left, top, width, height] in tiles(region) {
+        for [left, top, width, height] in tiles(region, TILE_PIXELS) {
             assert!(u64::from(width) * u64::from(height) <= TILE_PIXELS);
             for y in top..top + height {
                 for x in left..left + width {

@@ -1,3 +1,5 @@
+use crate::Aov;
+
 /// A rendered picture. Row 0 is the top one; arrays hold `size[0] × size[1]` pixels.
 #[derive(Clone, Debug)]
 pub struct Image {
@@ -13,6 +15,8 @@ pub struct Image {
     pub tangent: Vec<[f32; 3]>,
     /// Object id at the pixel's centre, 0 where nothing is.
     pub object_id: Vec<u32>,
+    /// Passes that were asked for, in that order: [`Aov::channels`] values for each pixel.
+    pub aovs: Vec<(Aov, Vec<f32>)>,
     /// What it took.
     pub statistics: Statistics,
 }

@@ -94,6 +94,7 @@ impl RestKnots {
             migration_rest,
             closed_periods: if closed { migration_whole.max(1) } else { 0 },
             seed: hash_combine(0x11c5_1e00, curve as u32),
+            rest_length: total as f32,
         });
 
         let start = self.source.len() as u32;

@@ -47,8 +47,12 @@ shared! {
         sample_index: u32,
         first: u32,
         cull_margin: f32,
-        padding_3: u32,
-        padding_4: u32,
+        plane_position: u32,
+        plane_uv: u32,
+        plane_vector: u32,
+        plane_matte: u32,
+        plane_albedo: u32,
+        neighbour_word: u32,
         lod_pixels: f32,
         light_count: u32,
         physical: u32,
@@ -91,6 +95,7 @@ shared! {
         migration_rest: f32,
         closed_periods: u32,
         seed: u32,
+        rest_length: f32,
     }
     Yarn {
         plies: u32,

@@ -1,5 +1,7 @@
 //! The renderer: yarn curves become fibers in compute shaders (`shaders/`), through `wgpu`.
 
+mod aov;
+pub mod cryptomatte;
 mod device;
 mod error;
 mod frame;
@@ -7,6 +9,7 @@ mod image;
 mod knots;
 mod layout;
 mod lights;
+mod motion;
 mod pipelines;
 mod renderer;
 mod scene;
@@ -15,10 +18,12 @@ mod tables;
 mod timing;
 mod upload;
 
+pub use aov::Aov;
 pub use device::{AdapterInfo, adapters};
 pub use error::Error;
 pub use image::{Image, Statistics};
-pub use lisle_core::scene::{Camera, Cone, Lens, Light, Object, Scene, Shading};
+pub use lisle_core::scene::{Camera, Cone, Labels, Lens, Light, Object, Scene, Shading};
+pub use motion::Exposure;
 pub use renderer::{Progress, Renderer};
 pub use scene::*;
 

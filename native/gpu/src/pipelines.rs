@@ -1,10 +1,11 @@
 //! Compute pipelines, and bind groups made of what each pass uses.
 
 use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Error;
 use crate::device::Gpu;
-use crate::shader::{Pass, Store};
+use crate::shader::{Film, Pass, Store};
 
 struct Pipeline {
     pipeline: wgpu::ComputePipeline,
@@ -13,7 +14,7 @@ struct Pipeline {
 
 /// The passes that one device runs.
 pub(crate) struct Pipelines {
-    passes: Vec<(Pass, Pipeline)>,
+    passes: Mutex<Vec<(Pass, Arc<Pipeline>)>>,
     /// Ways to store keys, one after the other.
     pub stores: Vec<Store>,
 }
@@ -26,35 +27,29 @@ impl Pipelines {
     pub fn new(gpu: &Gpu, wide: bool) -> Result<Self, Error> {
         let stores = if wide { vec![Store::Wide] } else { vec![Store::High, Store::Low] };
         let mut wanted = vec![Pass::Cull, Pass::Scan, Pass::Shadow];
-        wanted.extend([Pass::Classify, Pass::SizeLists, Pass::ResolveFibers, Pass::ResolveCores]);
+        let resolve = [Pass::ResolveFibers(Film::Plain), Pass::ResolveCores(Film::Plain)];
+        wanted.extend([Pass::Classify, Pass::SizeLists].into_iter().chain(resolve));
         wanted.extend(stores.iter().flat_map(|store| [Pass::Fibers(*store), Pass::Cores(*store)]));
-        let build = |pass: Pass| {
-            let bindings = pass.reflect().map_err(|message| gpu.error(format!("{pass:?}: {message}")))?.bindings;
-            let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(pass.entry_point()),
-                source: wgpu::ShaderSource::Wgsl(pass.source().into()),
-            });
-            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(pass.entry_point()),
-                layout: None,
-                module: &module,
-                entry_point: Some(pass.entry_point()),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    zero_initialize_workgroup_memory: matches!(pass, Pass::Cull | Pass::Scan),
-                    ..Default::default()
-                },
-                cache: None,
-            });
-            Ok((pass, Pipeline { pipeline, bindings }))
-        };
-        let passes = wanted.into_iter().map(build).collect::<Result<Vec<_>, Error>>()?;
-        gpu.finish()?;
-        Ok(Self { passes, stores })
+        let pipelines = Self { passes: Mutex::default(), stores };
+        pipelines.ensure(gpu, &wanted)?;
+        Ok(pipelines)
     }
 
-    fn get(&self, pass: Pass) -> &Pipeline {
-        let found = self.passes.iter().find(|(known, _)| *known == pass);
-        &found.expect("every pass of this device was built").1
+    /// Builds those of the passes that are not there yet.
+    pub fn ensure(&self, gpu: &Gpu, wanted: &[Pass]) -> Result<(), Error> {
+        let mut passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
+        for pass in wanted {
+            if !passes.iter().any(|(known, _)| known == pass) {
+                passes.push((*pass, Arc::new(build(gpu, *pass)?)));
+            }
+        }
+        gpu.finish()
+    }
+
+    fn get(&self, pass: Pass) -> Arc<Pipeline> {
+        let passes = self.passes.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = passes.iter().find(|(known, _)| *known == pass);
+        Arc::clone(&found.expect("every pass that is drawn was built").1)
     }
 
     /// Records a pass.
@@ -67,7 +62,8 @@ impl Pipelines {
         timestamps: Option<wgpu::ComputePassTimestampWrites>,
         dispatch: impl FnOnce(&mut wgpu::ComputePass),
     ) {
-        let Pipeline { pipeline, bindings: used } = self.get(pass);
+        let found = self.get(pass);
+        let Pipeline { pipeline, bindings: used } = &*found;
         let entries: Vec<_> = used
             .iter()
             .map(|binding| wgpu::BindGroupEntry { binding: *binding, resource: bindings[binding].as_entire_binding() })
@@ -85,4 +81,24 @@ impl Pipelines {
         compute.set_bind_group(0, &group, &[]);
         dispatch(&mut compute);
     }
+}
+
+fn build(gpu: &Gpu, pass: Pass) -> Result<Pipeline, Error> {
+    let bindings = pass.reflect().map_err(|message| gpu.error(format!("{pass:?}: {message}")))?.bindings;
+    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(pass.entry_point()),
+        source: wgpu::ShaderSource::Wgsl(pass.source().into()),
+    });
+    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(pass.entry_point()),
+        layout: None,
+        module: &module,
+        entry_point: Some(pass.entry_point()),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            zero_initialize_workgroup_memory: matches!(pass, Pass::Cull | Pass::Scan),
+            ..Default::default()
+        },
+        cache: None,
+    });
+    Ok(Pipeline { pipeline, bindings })
 }

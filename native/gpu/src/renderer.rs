@@ -3,13 +3,15 @@
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 
+use crate::aov::{NO_PLANE, Planes};
 use crate::device::Gpu;
 use crate::frame::{FrameBuffers, FrameInput, Recorder};
+use crate::motion::{Motion, Neighbour};
 use crate::pipelines::Pipelines;
+use crate::shader::{Film, Pass};
 use crate::tables::TableCache;
 use crate::upload::SceneBuffers;
-use crate::view::View;
-use crate::{AdapterInfo, Error, Image, Scene, Settings};
+use crate::{AdapterInfo, Aov, Error, Exposure, Image, Scene, Settings};
 
 /// How far a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,18 +78,56 @@ impl Renderer {
         settings: &Settings,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Image, Error> {
+        self.expose(&Exposure::still(scene), settings, progress)
+    }
+
+    /// The same for a scene that moves while the shutter is open: each sample is drawn at its own time.
+    ///
+    /// # Errors
+    /// As [`Self::render`]; [`Error::Input`] for times between which objects do not correspond.
+    pub fn expose(
+        &self,
+        exposure: &Exposure,
+        settings: &Settings,
+        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Image, Error> {
+        let Some(scene) = exposure.steps.first() else {
+            return Err(Error::input("time steps", "there are none"));
+        };
         let region = check(scene, settings)?;
-        let view = View::new(&scene.camera, settings.size)?;
+        if settings.aovs.contains(&Aov::Vector) && exposure.neighbours.is_none() {
+            return Err(Error::input("vector", "this pass needs the scenes of the frames before and after"));
+        }
+        let planes = Planes::new(&settings.aovs);
         // A panic elsewhere leaves at worst stale buffers behind, which the update below replaces.
         let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let State { tables, scene: kept_scene, frame: kept_frame } = &mut *state;
-        let (buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, settings.photons(), tables)?;
-        let draws = buffers.draws(scene, &which, view.origin)?;
-        let input = FrameInput { scene, settings, view: &view, draws: &draws, buffers: &buffers };
-        let frame = FrameBuffers::fit(&self.gpu, kept_frame.take(), &input, region)?;
-        let mut recorder = Recorder::new(&self.gpu, &self.pipelines, &input, &frame)?;
+        let (mut buffers, which) =
+            SceneBuffers::update(&self.gpu, kept_scene.take(), scene, settings.photons(), tables)?;
+        let motion = Motion::new(&self.gpu, exposure.steps, &which, settings.size, &buffers)?;
+        let neighbours = exposure.neighbours.filter(|_| planes.vector != NO_PLANE).map(|[before, after]| {
+            let neighbour =
+                |other, when| Neighbour::new(&self.gpu, scene, other, when, &which, settings.size, &buffers);
+            Ok::<_, Error>([neighbour(before, "frame before")?, neighbour(after, "frame after")?])
+        });
+        let neighbours = neighbours.transpose()?;
+        let moment = motion.at(&buffers, 0.5)?;
+        let wanted = [
+            (planes.count > 0, Pass::ResolveFibers(Film::Aovs)),
+            (planes.count > 0, Pass::ResolveCores(Film::Aovs)),
+            (neighbours.is_some(), Pass::Follow),
+            (!motion.shapes.is_empty(), Pass::MoveKnots),
+        ];
+        let wanted: Vec<Pass> = wanted.into_iter().filter_map(|(is, pass)| is.then_some(pass)).collect();
+        self.pipelines.ensure(&self.gpu, &wanted)?;
+        let neighbours = neighbours.as_ref();
+        let input = FrameInput { scene, settings, planes, buffers: &buffers, motion: &motion, neighbours };
+        let frame = FrameBuffers::fit(&self.gpu, kept_frame.take(), &input, &moment.draws, region)?;
+        let mut recorder = Recorder::new(&self.gpu, &self.pipelines, &input, &frame, moment)?;
         let image = recorder.picture(region, progress);
         drop(recorder);
+        buffers.displaced = !motion.shapes.is_empty();
+        drop(motion);
         *kept_scene = Some(buffers);
         *kept_frame = Some(frame);
         image

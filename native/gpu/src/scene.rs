@@ -2,6 +2,8 @@
 
 use lisle_core::scene::Shading;
 
+use crate::Aov;
+
 /// Which ambient occlusion [WuYuksel2018 §4.2].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Occlusion {
@@ -40,6 +42,8 @@ pub struct Settings {
     /// The number of the first sample in its sequence: a picture of samples 0 to 7 and one of 8 to 15 make, each with half the weight, one
     /// of 0 to 15. (With fewer than 8 they take more directions of the sky each.) Sample 0 is taken at the pixel's centre, through the lens's centre.
     pub first_sample: u32,
+    /// Further passes to draw, into [`crate::Image::aovs`].
+    pub aovs: Vec<Aov>,
 }
 
 impl Settings {
@@ -64,6 +68,7 @@ impl Default for Settings {
             shadow_resolution: 2048,
             seed: 0,
             first_sample: 0,
+            aovs: Vec::new(),
         }
     }
 }

@@ -50,6 +50,15 @@ pub enum Store {
     Low,
 }
 
+/// What the resolve passes add to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Film {
+    /// What every picture has.
+    Plain,
+    /// Further passes too.
+    Aovs,
+}
+
 /// A compute pass; its entry point has the name of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
@@ -60,13 +69,15 @@ pub enum Pass {
     Shadow,
     Classify,
     SizeLists,
-    ResolveFibers,
-    ResolveCores,
+    ResolveFibers(Film),
+    ResolveCores(Film),
+    Follow,
+    MoveKnots,
 }
 
 impl Pass {
     #[cfg(test)]
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 17] = [
         Self::Cull,
         Self::Scan,
         Self::Fibers(Store::Wide),
@@ -78,8 +89,12 @@ impl Pass {
         Self::Shadow,
         Self::Classify,
         Self::SizeLists,
-        Self::ResolveFibers,
-        Self::ResolveCores,
+        Self::ResolveFibers(Film::Plain),
+        Self::ResolveCores(Film::Plain),
+        Self::ResolveFibers(Film::Aovs),
+        Self::ResolveCores(Film::Aovs),
+        Self::Follow,
+        Self::MoveKnots,
     ];
 
     pub fn entry_point(self) -> &'static str {
@@ -91,8 +106,10 @@ impl Pass {
             Self::Shadow => "shadow",
             Self::Classify => "classify",
             Self::SizeLists => "size_lists",
-            Self::ResolveFibers => "resolve_fibers",
-            Self::ResolveCores => "resolve_cores",
+            Self::ResolveFibers(_) => "resolve_fibers",
+            Self::ResolveCores(_) => "resolve_cores",
+            Self::Follow => "follow",
+            Self::MoveKnots => "move_knots",
         }
     }
 
@@ -103,6 +120,10 @@ impl Pass {
             Store::High => files!["passes/store_high.wgsl"],
             Store::Low => files!["passes/store_low.wgsl"],
         };
+        let film = |film| match film {
+            Film::Plain => files!["passes/no_aov.wgsl"],
+            Film::Aovs => files!["passes/aov.wgsl"],
+        };
         let parts: Vec<Files> = match self {
             Self::Cull => vec![SCENE, WORK, files!["passes/cull.wgsl"]],
             Self::Scan => vec![SCENE, WORK, files!["passes/scan.wgsl"]],
@@ -111,8 +132,12 @@ impl Pass {
             Self::Shadow => vec![SCENE, files!["math/capsule.wgsl", "passes/work.wgsl", "passes/shadow.wgsl"]],
             Self::Classify => vec![SCENE, WORK, files!["passes/key.wgsl", "passes/film.wgsl", "passes/classify.wgsl"]],
             Self::SizeLists => vec![SCENE, WORK, files!["passes/film.wgsl", "passes/size_lists.wgsl"]],
-            Self::ResolveFibers => vec![SCENE, WORK, RASTER, SHADING, files!["passes/resolve_fibers.wgsl"]],
-            Self::ResolveCores => vec![SCENE, WORK, RASTER, SHADING, files!["passes/resolve_cores.wgsl"]],
+            Self::ResolveFibers(f) => {
+                vec![SCENE, WORK, RASTER, SHADING, film(f), files!["passes/resolve_fibers.wgsl"]]
+            }
+            Self::ResolveCores(f) => vec![SCENE, WORK, RASTER, SHADING, film(f), files!["passes/resolve_cores.wgsl"]],
+            Self::Follow => vec![SCENE, WORK, files!["passes/follow.wgsl"]],
+            Self::MoveKnots => vec![files!["math/pack.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"]],
         };
         parts.iter().flat_map(|files| files.iter()).map(|(_, text)| *text).collect::<Vec<_>>().join("\n")
     }
@@ -194,13 +219,13 @@ mod tests {
 
     #[test]
     fn shared_structs_match_the_shaders() {
-        let module = Pass::ResolveFibers.reflect().expect("valid").module;
+        let module = Pass::ResolveFibers(Film::Aovs).reflect().expect("valid").module;
         assert_eq!(mismatches(&module), Vec::<String>::new());
     }
 
     #[test]
     fn a_moved_member_is_noticed() {
-        let source = Pass::ResolveFibers.source();
+        let source = Pass::ResolveFibers(Film::Aovs).source();
         let moved =
             source.replace("    first_knot: u32,\n    knot_count: u32,", "    knot_count: u32,\n    first_knot: u32,");
         assert_ne!(source, moved);

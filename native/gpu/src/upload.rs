@@ -11,7 +11,7 @@ use lisle_core::strands::Yarns;
 use lisle_core::yarn::Yarn;
 
 use crate::device::Gpu;
-use crate::knots::RestKnots;
+use crate::knots::{MovingKnots, RestKnots};
 use crate::layout;
 use crate::tables::{TableBuffer, TableCache, bound};
 use crate::view::Bounds;
@@ -23,14 +23,45 @@ struct Upload {
     yarn: Arc<Yarn>,
     knots: RestKnots,
     first_knot: u32,
-    center: DVec3,
-    bounds: Bounds,
-    slenderness: f64,
     segment_count: u64,
 }
 
+/// Where a set of curves is.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    /// What positions are relative to, object space.
+    center: DVec3,
+    /// Relative to that.
+    bounds: Bounds,
+    slenderness: f64,
+}
+
+impl Place {
+    fn of(moving: &MovingKnots) -> Self {
+        Self { center: moving.center, bounds: moving.bounds, slenderness: moving.slenderness }
+    }
+
+    /// On the way to another: a box that holds all, and no less slender.
+    pub fn between(&self, other: &Self, share: f64) -> Self {
+        let (a, b) = (&self.bounds, &other.bounds);
+        Self {
+            center: self.center.lerp(other.center, share),
+            bounds: Bounds { min: a.min.lerp(b.min, share), max: a.max.lerp(b.max, share) },
+            slenderness: self.slenderness.max(other.slenderness),
+        }
+    }
+}
+
+/// Positions and frames of all curves at one time.
+pub(crate) struct Shape {
+    pub positions: wgpu::Buffer,
+    pub frames: wgpu::Buffer,
+    /// Of each set of curves.
+    pub places: Vec<Place>,
+}
+
 /// Whether two shapes are frames of the same rest shape.
-fn same_rest(a: &Yarns, b: &Yarns) -> bool {
+pub(crate) fn same_rest(a: &Yarns, b: &Yarns) -> bool {
     std::ptr::eq(a.strands().lengths(), b.strands().lengths()) && std::ptr::eq(a.strands().radii(), b.strands().radii())
 }
 
@@ -41,8 +72,9 @@ pub(crate) struct SceneBuffers {
     materials: Vec<Arc<Material>>,
     /// Kinds, materials and photons of the tables of multiple scattering, and their offsets.
     transports: Vec<(TransportKey, u32)>,
-    pub positions: wgpu::Buffer,
-    pub frames: wgpu::Buffer,
+    pub shape: Shape,
+    /// Whether the shape is none that was uploaded, but one between two.
+    pub displaced: bool,
     pub radii: wgpu::Buffer,
     pub curves: wgpu::Buffer,
     pub yarns: wgpu::Buffer,
@@ -55,6 +87,7 @@ pub(crate) struct SceneBuffers {
 type TransportKey = (u32, u32, u32);
 
 /// The instances to draw.
+#[derive(Clone)]
 pub(crate) struct Draws {
     pub items: Vec<layout::Draw>,
     /// Padded knots, each of which may begin a segment; the shaders number segments by them.
@@ -182,7 +215,7 @@ impl SceneBuffers {
     fn upload(gpu: &Gpu, sets: &[Set]) -> Result<Self, Error> {
         let mut first_knot = 0_u32;
         let (mut radii, mut curves) = (Vec::new(), Vec::new());
-        let (mut positions, mut frames) = (Vec::new(), Vec::new());
+        let (mut positions, mut frames, mut places) = (Vec::new(), Vec::new(), Vec::new());
         let mut uploads = Vec::with_capacity(sets.len());
         for Set { yarns, yarn } in sets {
             let mut knots = RestKnots::new(yarns.strands(), yarn);
@@ -190,20 +223,12 @@ impl SceneBuffers {
             curves.append(&mut knots.curves);
             radii.extend(knots.radii.drain(..).map(|[radius, curve]| [radius, curve + first_curve]));
             let mut moving = knots.moving(yarns.strands());
+            places.push(Place::of(&moving));
             positions.append(&mut moving.positions);
             frames.append(&mut moving.frames);
             let length = knots.len() as u32;
             let segment_count = knots.segment_count() as u64;
-            uploads.push(Upload {
-                yarns: Arc::clone(yarns),
-                yarn: Arc::clone(yarn),
-                knots,
-                first_knot,
-                center: moving.center,
-                bounds: moving.bounds,
-                slenderness: moving.slenderness,
-                segment_count,
-            });
+            uploads.push(Upload { yarns: Arc::clone(yarns), yarn: Arc::clone(yarn), knots, first_knot, segment_count });
             first_knot += length;
         }
         let buffers = Self {
@@ -211,8 +236,12 @@ impl SceneBuffers {
             kinds: Vec::new(),
             materials: Vec::new(),
             transports: Vec::new(),
-            positions: storage(gpu, "control points (positions)", &positions)?,
-            frames: storage(gpu, "control points (frames)", &frames)?,
+            shape: Shape {
+                positions: storage(gpu, "control points (positions)", &positions)?,
+                frames: storage(gpu, "control points (frames)", &frames)?,
+                places,
+            },
+            displaced: false,
             radii: storage(gpu, "control points (radii)", &radii)?,
             curves: storage(gpu, "curves", &curves)?,
             yarns: empty_storage(gpu, "yarn kinds", 0)?,
@@ -226,31 +255,67 @@ impl SceneBuffers {
 
     /// The next frame of known yarns: positions and frames, and only of those that moved.
     fn move_knots(&mut self, gpu: &Gpu, sets: &[Set]) {
-        for (upload, Set { yarns, .. }) in self.uploads.iter_mut().zip(sets) {
-            let moved = !Arc::ptr_eq(&upload.yarns, yarns) && !std::ptr::eq(upload.yarns.points(), yarns.points());
+        let displaced = std::mem::take(&mut self.displaced);
+        for ((upload, place), Set { yarns, .. }) in self.uploads.iter_mut().zip(&mut self.shape.places).zip(sets) {
+            let moved =
+                displaced || !Arc::ptr_eq(&upload.yarns, yarns) && !std::ptr::eq(upload.yarns.points(), yarns.points());
             upload.yarns = Arc::clone(yarns);
             if moved {
                 let moving = upload.knots.moving(yarns.strands());
                 let first = u64::from(upload.first_knot);
-                gpu.queue.write_buffer(&self.positions, 12 * first, bytemuck::cast_slice(&moving.positions));
-                gpu.queue.write_buffer(&self.frames, 8 * first, bytemuck::cast_slice(&moving.frames));
+                gpu.queue.write_buffer(&self.shape.positions, 12 * first, bytemuck::cast_slice(&moving.positions));
+                gpu.queue.write_buffer(&self.shape.frames, 8 * first, bytemuck::cast_slice(&moving.frames));
                 self.uploaded_bytes += 20 * upload.knots.len() as u64;
-                (upload.center, upload.bounds) = (moving.center, moving.bounds);
-                upload.slenderness = moving.slenderness;
+                *place = Place::of(&moving);
             }
         }
     }
 
+    /// The same curves at another time, by a scene whose objects are those of the one that `which` belongs to.
+    pub fn shape_of(&self, gpu: &Gpu, scene: &Scene, which: &[usize]) -> Result<Shape, Error> {
+        let (mut positions, mut frames, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        for (set, upload) in self.uploads.iter().enumerate() {
+            let of_set = || which.iter().zip(&scene.objects).filter(|(w, _)| **w == set).map(|(_, object)| object);
+            let first = of_set().next().expect("every set is an object's");
+            if let Some(other) = of_set().find(|other| !std::ptr::eq(other.yarns.points(), first.yarns.points())) {
+                let reason = format!("it shares its yarns with \"{}\" at one time and not at another", first.name);
+                return Err(Error::input(format!("object \"{}\"", other.name), reason));
+            }
+            let mut moving = upload.knots.moving(first.yarns.strands());
+            places.push(Place::of(&moving));
+            positions.append(&mut moving.positions);
+            frames.append(&mut moving.frames);
+        }
+        Ok(Shape {
+            positions: storage(gpu, "control points at another time (positions)", &positions)?,
+            frames: storage(gpu, "control points at another time (frames)", &frames)?,
+            places,
+        })
+    }
+
+    /// Padded knots of all sets.
+    pub fn knot_count(&self) -> u32 {
+        self.uploads.iter().map(|upload| upload.knots.len() as u32).sum()
+    }
+
     pub fn knot_bytes(&self) -> u64 {
-        self.positions.size() + self.frames.size() + self.radii.size() + self.curves.size()
+        self.shape.positions.size() + self.shape.frames.size() + self.radii.size() + self.curves.size()
     }
 
     pub fn table_bytes(&self) -> u64 {
         self.yarns.size() + self.material_data.size() + self.tables.size()
     }
 
-    /// The scene's objects as draws of these buffers; `which` is what [`Self::update`] gave.
-    pub fn draws(&self, scene: &Scene, which: &[usize], origin: DVec3) -> Result<Draws, Error> {
+    /// The scene's objects as draws of these buffers, with such transforms to the world and places of the sets; `which` is what
+    /// [`Self::update`] gave.
+    pub fn draws(
+        &self,
+        scene: &Scene,
+        which: &[usize],
+        origin: DVec3,
+        transforms: &[DMat4],
+        places: &[Place],
+    ) -> Result<Draws, Error> {
         let mut draws = Draws {
             items: Vec::new(),
             segment_count: 0,
@@ -260,9 +325,10 @@ impl SceneBuffers {
             radius_max: 0.0,
             slenderness: 0.0,
         };
-        for (object, upload) in scene.objects.iter().zip(which.iter().map(|w| &self.uploads[*w])) {
+        for ((object, transform), set) in scene.objects.iter().zip(transforms).zip(which) {
+            let (upload, place) = (&self.uploads[*set], &places[*set]);
             let render_from_object =
-                DMat4::from_translation(-origin) * object.world_from_object * DMat4::from_translation(upload.center);
+                DMat4::from_translation(-origin) * *transform * DMat4::from_translation(place.center);
             let determinant = render_from_object.determinant();
             let scale = determinant.abs().cbrt();
             let row = |i: usize| -> Vec4 { render_from_object.row(i).as_vec4() };
@@ -290,9 +356,9 @@ impl SceneBuffers {
             })?;
             draws.real_segments += upload.segment_count;
             draws.radius_max = draws.radius_max.max(radius_max);
-            draws.slenderness = draws.slenderness.max(upload.slenderness);
+            draws.slenderness = draws.slenderness.max(place.slenderness);
             let reach = radius_max * bound(&object.yarn);
-            draws.bounds.merge(&upload.bounds.transformed(&render_from_object).grown(reach));
+            draws.bounds.merge(&place.bounds.transformed(&render_from_object).grown(reach));
             draws.most_slots = draws.most_slots.max(object.yarn.plies * (object.yarn.fibers_per_ply + 1));
         }
         Ok(draws)

@@ -20,6 +20,7 @@ __all__ = [
     "adapters",
     "check_material",
     "check_yarn",
+    "cryptomatte_hash",
     "fibers",
     "knit_flat",
     "knit_mesh",
@@ -148,6 +149,8 @@ class Renderer:
         lights: Sequence[Light],
         ambient: tuple[float, float, float],
         camera: Camera,
+        later: Sequence[tuple[Sequence[Object], Camera]],
+        neighbours: Sequence[tuple[Sequence[Object], Camera]],
         settings: Mapping[str, Any],
         progress: Callable[[float], bool | None] | None,
     ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]: ...
@@ -173,14 +176,9 @@ def reference(
 def load(path: Path, yarn_radius: float | None) -> Yarns: ...
 def save_png(path: Path, combined: npt.NDArray[np.float32], bits: int) -> None: ...
 def save_exr(
-    path: Path,
-    combined: npt.NDArray[np.float32],
-    depth: npt.NDArray[np.float32],
-    normal: npt.NDArray[np.float32],
-    tangent: npt.NDArray[np.float32],
-    object_id: npt.NDArray[np.uint32],
-    variance: npt.NDArray[np.float32] | None = None,
+    path: Path, passes: Sequence[tuple[Sequence[str], npt.NDArray[Any]]], metadata: Mapping[str, str]
 ) -> None: ...
+def cryptomatte_hash(name: str) -> int: ...
 def check_yarn(yarn: Yarn) -> None: ...
 def yarn_presets() -> tuple[str, ...]: ...
 def yarn_preset(name: str) -> dict[str, Any]: ...

@@ -1,6 +1,7 @@
 """A rendered picture."""
 
-from collections.abc import Iterator, Mapping
+import json
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +10,45 @@ import numpy.typing as npt
 
 from . import _native
 from .errors import InputError
+from .scene import Scene
 
-PASSES = ("combined", "depth", "alpha", "normal", "tangent", "object_id", "variance")
+FURTHER_PASSES = (
+    "position",
+    "uv",
+    "vector",
+    "object_index",
+    "material_index",
+    "crypto_object",
+    "crypto_material",
+    "albedo",
+    "denoising_normal",
+)
+"""Those that are drawn when asked for."""
+
+PASSES = ("combined", "depth", "alpha", "normal", "tangent", "object_id", "variance", *FURTHER_PASSES)
+
+CRYPTOMATTES = {"crypto_object": "CryptoObject", "crypto_material": "CryptoMaterial"}
+"""Cryptomatte passes, and what files call them."""
+
+CHANNELS = {
+    "combined": ("R", "G", "B", "A"),
+    "depth": ("Z",),
+    "normal": ("normal.X", "normal.Y", "normal.Z"),
+    "tangent": ("tangent.X", "tangent.Y", "tangent.Z"),
+    "object_id": ("object_id",),
+    "variance": ("variance.R", "variance.G", "variance.B"),
+    "position": ("position.X", "position.Y", "position.Z"),
+    "uv": ("uv.U", "uv.V"),
+    "vector": ("vector.X", "vector.Y", "vector.Z", "vector.W"),
+    "object_index": ("object_index",),
+    "material_index": ("material_index",),
+    "albedo": ("albedo.R", "albedo.G", "albedo.B"),
+    "denoising_normal": ("denoising_normal.X", "denoising_normal.Y", "denoising_normal.Z"),
+} | {
+    name: tuple(f"{layer}{rank:02}.{channel}" for rank in range(3) for channel in "RGBA")
+    for name, layer in CRYPTOMATTES.items()
+}
+"""Of an EXR, by pass."""
 
 
 class Image(Mapping[str, npt.NDArray[Any]]):
@@ -25,15 +63,42 @@ class Image(Mapping[str, npt.NDArray[Any]]):
     | tangent | (h, w, 3) f32 | direction of the fiber, world space |
     | object_id | (h, w) u32 | 0 where nothing is |
     | variance | (h, w, 3) f32 | of the means in `combined`: standard errors squared; by `Reference` alone |
+
+    Depth, object id and what is marked * belong to the pixel's centre, all else to the whole pixel. By `Renderer`, when
+    asked for:
+
+    | pass | shape | meaning |
+    |---|---|---|
+    | position * | (h, w, 3) f32 | world space, 0 where nothing is |
+    | uv * | (h, w, 2) f32 | length coordinate along the yarn, angle around it from its normal in turns, 0 to 1 |
+    | vector * | (h, w, 4) f32 | movement on the picture, see below |
+    | object_index * | (h, w) f32 | `Object.object_index` |
+    | material_index * | (h, w) f32 | `Object.material_index` |
+    | crypto_object | (h, w, 12) f32 | six pairs of id and coverage, for `Object.name`, as Cryptomatte has them |
+    | crypto_material | (h, w, 12) f32 | the same for `Object.material_name` |
+    | albedo | (h, w, 3) f32 | colour without light, premultiplied, for a denoiser |
+    | denoising_normal | (h, w, 3) f32 | mean normal, world space, not of unit length |
+
+    "vector" is in pixels, X to the right, Y up: the place one frame before minus the present one, then the present one
+    minus the place one frame after, as in Blender.
     """
 
     statistics: dict[str, Any]
     """What drawing took: segments drawn, milliseconds by pass, memory on the device."""
 
-    def __init__(self, passes: Mapping[str, npt.NDArray[Any]], statistics: dict[str, Any]) -> None:
+    manifests: dict[str, dict[str, int]]
+    """Of each Cryptomatte pass: its names, and their hashes, of which an id is the float."""
+
+    def __init__(
+        self,
+        passes: Mapping[str, npt.NDArray[Any]],
+        statistics: dict[str, Any],
+        manifests: dict[str, dict[str, int]] | None = None,
+    ) -> None:
         self._passes = dict(passes)
         self._passes["alpha"] = self._passes["combined"][..., 3]
         self.statistics = statistics
+        self.manifests = manifests or {}
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         try:
@@ -67,7 +132,36 @@ class Image(Mapping[str, npt.NDArray[Any]]):
                 raise InputError(f"bits: a PNG has 8 or 16, not {bits}")
             _native.save_png(path, np.ascontiguousarray(self["combined"]), bits)
         elif suffix == ".exr":
-            passes = {name: np.ascontiguousarray(self[name]) for name in self if name != "alpha"}
-            _native.save_exr(path, **passes)
+            channels = [(CHANNELS[name], np.ascontiguousarray(self[name])) for name in self if name != "alpha"]
+            _native.save_exr(path, channels, cryptomatte_metadata(self.manifests))
         else:
             raise InputError(f"{path}: unknown kind of picture {suffix!r}: expected .png or .exr")
+
+
+def manifests(scene: Scene, passes: Iterable[str]) -> dict[str, dict[str, int]]:
+    """Names and hashes of the Cryptomatte passes among those."""
+    names = {
+        "crypto_object": [entry.name for entry in scene.objects],
+        "crypto_material": [entry.material_name for entry in scene.objects],
+    }
+    return {
+        key: {name: _native.cryptomatte_hash(name) for name in sorted(set(names[key]))}
+        for key in CRYPTOMATTES
+        if key in passes
+    }
+
+
+def cryptomatte_metadata(manifests: Mapping[str, Mapping[str, int]], layer_prefix: str = "") -> dict[str, str]:
+    """What a file says of its Cryptomatte passes, as the specification wants it."""
+    metadata: dict[str, str] = {}
+    for key, manifest in manifests.items():
+        layer = layer_prefix + CRYPTOMATTES[key]
+        prefix = f"cryptomatte/{_native.cryptomatte_hash(layer):08x}"[: len("cryptomatte/") + 7]
+        hashes = {name: f"{number:08x}" for name, number in manifest.items()}
+        metadata |= {
+            f"{prefix}/name": layer,
+            f"{prefix}/hash": "MurmurHash3_32",
+            f"{prefix}/conversion": "uint32_to_float32",
+            f"{prefix}/manifest": json.dumps(hashes, separators=(",", ":")),
+        }
+    return metadata

@@ -1,16 +1,17 @@
 """The renderer."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from . import _arguments as arguments
 from . import _native
 from ._arguments import Vector
 from ._native import Adapter, Yarns
 from .camera import Camera
-from .image import Image
+from .errors import InputError
+from .image import FURTHER_PASSES, Image, manifests
 from .lights import Light
 from .material import Material
-from .scene import Scene, scene_of
+from .scene import Scene, moved, scenes_of
 from .yarn import Yarn
 
 Progress = Callable[[float], bool | None]
@@ -40,11 +41,11 @@ class Renderer:
 
     def render(
         self,
-        what: Yarns | Scene,
+        what: Yarns | Scene | Sequence[Yarns] | Sequence[Scene],
         *,
         yarn: Yarn | None = None,
         material: Material | None = None,
-        camera: Camera | None = None,
+        camera: Camera | Sequence[Camera] | None = None,
         lights: Iterable[Light] | None = None,
         ambient: Vector | None = None,
         samples: int = 16,
@@ -59,15 +60,23 @@ class Renderer:
         shadow_resolution: int = 2048,
         seed: int = 0,
         first_sample: int = 0,
+        passes: Iterable[str] = (),
+        before: Yarns | Scene | None = None,
+        after: Yarns | Scene | None = None,
         progress: Progress | None = None,
     ) -> Image:
         """Draws yarns, or a scene.
 
+        Motion blur: a list of scenes, or of shapes of the same yarns (`with_points`) and of cameras, stands for even
+        steps over the time that the shutter is open. Between them everything moves evenly. Objects correspond by their
+        order; lights are those of the first scene. What belongs to the pixel's centre, such as depth, is of the middle
+        of that time.
+
         Args:
-            what: yarns, with the next five arguments; or a scene, which has them already.
+            what: yarns, with the next five arguments; or a scene, which has them already; or a list, see above.
             yarn: the procedural yarn; "cotton-1" unless given.
             material: how its fibers scatter; "cotton" unless given.
-            camera: viewpoint; `Camera.fit(yarns)` unless given.
+            camera: viewpoint, or one for each time step; `Camera.fit(yarns)` of the first unless given.
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
             samples: jittered samples per pixel.
@@ -82,8 +91,10 @@ class Renderer:
             filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
             shadow_resolution: texels along one side of a shadow map, 16 to 16384.
             seed: of the sample sequence.
-            first_sample: its number in that sequence: samples 0 to 7 and samples 8 to 15 are two halves of one picture of
-                16. Sample 0 is taken at the pixel's centre, through the lens's centre.
+            first_sample: its number in that sequence: samples 0 to 7 and 8 to 15 are two halves of one picture of 16.
+                Sample 0 is taken at the pixel's centre, through the lens's centre.
+            passes: further ones to draw, see `Image`; without them they take neither time nor memory.
+            before, after: what is drawn as it is one frame earlier and one later, for the pass "vector".
             progress: called now and then with the finished fraction; returning False cancels.
 
         Raises:
@@ -91,13 +102,23 @@ class Renderer:
             DeviceError: the adapter failed.
             Cancelled: `progress` returned False. What `progress` raises comes through as it is.
         """
-        scene = scene_of(what, yarn, material, camera, lights, ambient)
+        steps = scenes_of(what, yarn, material, camera, lights, ambient)
+        scene = steps[0]
+        if (before is None) != (after is None):
+            raise InputError("before, after: expected both or neither")
+        neighbours = [moved(scene, other) for other in (before, after) if other is not None]
+        passes = tuple(passes)
+        for name in passes:
+            if name not in FURTHER_PASSES:
+                raise InputError(f"passes: {name!r} is none of {', '.join(FURTHER_PASSES)}")
         size = arguments.pixels("size", scene.camera.size if size is None else size)
-        passes, statistics = self._native.render(
+        drawn, statistics = self._native.render(
             scene.objects,
             scene.lights,
             scene.ambient,
             scene.camera,
+            [(step.objects, step.camera) for step in steps[1:]],
+            [(other.objects, other.camera) for other in neighbours],
             {
                 "size": size,
                 "region": None if region is None else arguments.from_top_left(region, size),
@@ -111,7 +132,8 @@ class Renderer:
                 "shadow_resolution": shadow_resolution,
                 "seed": seed,
                 "first_sample": first_sample,
+                "passes": passes,
             },
             progress,
         )
-        return Image(passes, statistics)
+        return Image(drawn, statistics, manifests(scene, passes))

@@ -1,7 +1,7 @@
 """What is drawn."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -32,6 +32,9 @@ class Object:
     world_from_object: npt.NDArray[np.float64]
     object_id: int
     name: str
+    object_index: int = 0
+    material_name: str = ""
+    material_index: int = 0
 
 
 class Scene:
@@ -71,6 +74,9 @@ class Scene:
         transform: npt.ArrayLike | None = None,
         object_id: int | None = None,
         name: str | None = None,
+        object_index: int = 0,
+        material_name: str = "",
+        material_index: int = 0,
     ) -> Object:
         """Adds yarn curves.
 
@@ -81,7 +87,10 @@ class Scene:
             transform: 4×4, object to world.
             object_id: the number in the object-id pass, above 0, which also seeds the fibers; the object's place in the
                 scene unless given.
-            name: for messages.
+            name: for messages, and in the pass "crypto_object".
+            object_index: the number in the pass "object_index", which need not be unique.
+            material_name: the name in the pass "crypto_material".
+            material_index: the number in the pass "material_index".
         """
         if not isinstance(yarns, Yarns):
             raise InputError(f"yarns: expected lisle.Yarns, got {type(yarns).__name__}")
@@ -96,6 +105,9 @@ class Scene:
             world_from_object=arguments.matrix(f"{name}: transform", np.eye(4) if transform is None else transform),
             object_id=number,
             name=name,
+            object_index=_index(name, "object_index", object_index),
+            material_name=str(material_name),
+            material_index=_index(name, "material_index", material_index),
         )
         self._objects.append(added)
         return added
@@ -123,7 +135,53 @@ def scene_of(
     return scene
 
 
+def scenes_of(
+    what: Yarns | Scene | Sequence[Yarns] | Sequence[Scene],
+    yarn: Yarn | None,
+    material: Material | None,
+    camera: Camera | Sequence[Camera] | None,
+    lights: Iterable[Light] | None,
+    ambient: Vector | None,
+) -> list[Scene]:
+    """The same at several times: lists of scenes, yarns or cameras, of one length; what is no list counts for all."""
+    if not isinstance(what, (Yarns, Scene, Sequence)) or (isinstance(what, Sequence) and not what):
+        raise InputError(f"expected lisle.Yarns, a lisle.Scene or a list of either, got {type(what).__name__}")
+    shapes: list[Yarns | Scene] = [what] if isinstance(what, (Yarns, Scene)) else list(what)
+    cameras = [camera] if camera is None or isinstance(camera, Camera) else list(camera)
+    count = max(len(shapes), len(cameras))
+    for name, items in (("time steps", shapes), ("cameras", cameras)):
+        if len(items) not in (1, count):
+            raise InputError(f"{name}: there are {len(items)}, expected {count}, as many as of the others")
+    first = scene_of(shapes[0], yarn, material, cameras[0], lights, ambient)
+    scenes = [first]
+    for step in range(1, count):
+        shape, seen_from = shapes[step % len(shapes)], cameras[step % len(cameras)]
+        scenes.append(moved(first, shape, seen_from))
+    return scenes
+
+
+def moved(scene: Scene, what: Yarns | Scene, camera: Camera | None = None) -> Scene:
+    """A scene at another time: as given, or with its only object's yarns in another shape."""
+    if isinstance(what, Scene):
+        if camera is not None:
+            raise InputError("camera: the scene has its own")
+        return what
+    if not isinstance(what, Yarns):
+        raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
+    if len(scene.objects) != 1:
+        raise InputError("yarns in another shape stand for a scene of one object")
+    other = Scene(camera or scene.camera, scene.lights, scene.ambient)
+    other._objects.append(replace(scene.objects[0], yarns=what))
+    return other
+
+
 def _expect(name: str, argument: str, kind: type[T], value: object) -> T:
     if not isinstance(value, kind):
         raise InputError(f"{name}: {argument}: expected a lisle.{kind.__name__}, got {type(value).__name__}")
     return value
+
+
+def _index(name: str, argument: str, value: int) -> int:
+    if not 0 <= value < 2**24:
+        raise InputError(f"{name}: {argument} {value} is not from 0 to 2²⁴ − 1")
+    return int(value)

@@ -1,55 +1,76 @@
 //! Pictures for a compositor.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use exr::meta::attribute::{AttributeValue, Text};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
-use numpy::{Element, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::error::Failure;
 use crate::gil::detached;
 use crate::save;
 
-/// Writes all passes, scene-linear, into one part: `R G B A` premultiplied, `Z`, `normal.X Y Z`, `tangent.X Y Z`, `object_id`; `variance.R G B`
-/// where there is one.
+/// Values of a pass, (h, w) or (h, w, channels).
+#[derive(FromPyObject)]
+pub enum Values<'py> {
+    /// Numbers.
+    Float(PyReadonlyArrayDyn<'py, f32>),
+    /// Ids.
+    Integer(PyReadonlyArrayDyn<'py, u32>),
+}
+
+/// Writes passes, scene-linear, into one part: for each the names of its channels and its values. `metadata` is text by attribute.
 #[pyfunction]
-#[pyo3(signature = (path, combined, depth, normal, tangent, object_id, variance=None))]
-#[expect(clippy::too_many_arguments, reason = "one a pass")]
 pub fn save_exr(
     py: Python<'_>,
     path: PathBuf,
-    combined: PyReadonlyArray3<'_, f32>,
-    depth: PyReadonlyArray2<'_, f32>,
-    normal: PyReadonlyArray3<'_, f32>,
-    tangent: PyReadonlyArray3<'_, f32>,
-    object_id: PyReadonlyArray2<'_, u32>,
-    variance: Option<PyReadonlyArray3<'_, f32>>,
+    passes: Vec<(Vec<String>, Values<'_>)>,
+    metadata: BTreeMap<String, String>,
 ) -> Result<(), Failure> {
-    let (height, width) = (combined.shape()[0], combined.shape()[1]);
-    let colors = slice("combined", &combined, &[height, width, 4])?;
-    let depths = slice("depth", &depth, &[height, width])?;
-    let normals = slice("normal", &normal, &[height, width, 3])?;
-    let tangents = slice("tangent", &tangent, &[height, width, 3])?;
-    let ids = slice("object_id", &object_id, &[height, width])?;
-    let variances = variance.as_ref().map(|array| slice("variance", array, &[height, width, 3])).transpose()?;
-    detached(py, || {
-        let mut channels = Vec::new();
-        let mut add = |names: &[&str], values: &[f32]| {
-            for (channel, name) in names.iter().enumerate() {
-                let samples = values.iter().skip(channel).step_by(names.len()).copied().collect();
-                channels.push(AnyChannel::new(*name, FlatSamples::F32(samples)));
-            }
+    let mut size = None;
+    let mut channels = Vec::new();
+    for (names, values) in &passes {
+        let shape = match values {
+            Values::Float(array) => array.shape(),
+            Values::Integer(array) => array.shape(),
         };
-        add(&["R", "G", "B", "A"], colors);
-        add(&["Z"], depths);
-        add(&["normal.X", "normal.Y", "normal.Z"], normals);
-        add(&["tangent.X", "tangent.Y", "tangent.Z"], tangents);
-        if let Some(variances) = variances {
-            add(&["variance.R", "variance.G", "variance.B"], variances);
+        let (height, width) = match *shape {
+            [height, width] if names.len() == 1 => (height, width),
+            [height, width, count] if names.len() == count => (height, width),
+            _ => return Err(Failure::Input(format!("{names:?}: {shape:?} are not as many channels"))),
+        };
+        if *size.get_or_insert((width, height)) != (width, height) {
+            return Err(Failure::Input(format!("{names:?}: {shape:?} is not of the other passes' size")));
         }
-        channels.push(AnyChannel::new("object_id", FlatSamples::U32(ids.to_vec())));
+        for (channel, name) in names.iter().enumerate() {
+            let every = |length: usize| (channel..length).step_by(names.len());
+            let broken = |error: numpy::AsSliceError| Failure::Input(format!("{name}: {error}"));
+            let samples = match values {
+                Values::Float(array) => {
+                    let slice = array.as_slice().map_err(broken)?;
+                    FlatSamples::F32(every(slice.len()).map(|i| slice[i]).collect())
+                }
+                Values::Integer(array) => {
+                    let slice = array.as_slice().map_err(broken)?;
+                    FlatSamples::U32(every(slice.len()).map(|i| slice[i]).collect())
+                }
+            };
+            channels.push(AnyChannel::new(name.as_str(), samples));
+        }
+    }
+    let size = size.ok_or_else(|| Failure::Input("a picture without passes".to_owned()))?;
+    let text = |text: &str| {
+        Text::new_or_none(text).ok_or_else(|| Failure::Input(format!("{text:?} cannot be written into an EXR")))
+    };
+    let mut attributes = LayerAttributes::default();
+    for (name, value) in &metadata {
+        attributes.other.insert(text(name)?, AttributeValue::Text(text(value)?));
+    }
+    detached(py, || {
         let channels = AnyChannels::sort(channels.into_iter().collect());
-        let layer = Layer::new((width, height), LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);
+        let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
         save::replace(&path, |file| {
             // The writer seeks; a buffer in memory is simpler than a seekable, buffered file.
             let mut bytes = std::io::Cursor::new(Vec::new());
@@ -59,13 +80,8 @@ pub fn save_exr(
     })
 }
 
-fn slice<'a, T: Element, D: numpy::ndarray::Dimension>(
-    name: &str,
-    array: &'a numpy::PyReadonlyArray<'_, T, D>,
-    shape: &[usize],
-) -> Result<&'a [T], Failure> {
-    if array.shape() != shape {
-        return Err(Failure::Input(format!("{name}: expected shape {shape:?}, got {:?}", array.shape())));
-    }
-    array.as_slice().map_err(|error| Failure::Input(format!("{name}: {error}")))
+/// The hash by which Cryptomatte knows a name.
+#[pyfunction]
+pub fn cryptomatte_hash(name: &str) -> u32 {
+    lisle_gpu::cryptomatte::hash(name)
 }

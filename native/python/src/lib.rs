@@ -29,7 +29,7 @@ mod native {
     #[pymodule_export]
     use super::adapter::{Adapter, adapters};
     #[pymodule_export]
-    use super::exr::save_exr;
+    use super::exr::{cryptomatte_hash, save_exr};
     #[pymodule_export]
     use super::fabric::{knit_flat, knit_mesh, knit_sleeve, knit_tube, sweater, woven_flat};
     #[pymodule_export]

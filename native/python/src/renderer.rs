@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use lisle_gpu::{Image, Statistics};
+use lisle_gpu::{Exposure, Image, Statistics};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -10,7 +10,7 @@ use crate::adapter::Adapter;
 use crate::convert::{array, field_error};
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
-use crate::scene::{CameraFields, LightFields, ObjectFields, SettingsItems, scene};
+use crate::scene::{CameraFields, LightFields, ObjectFields, SettingsItems, StepFields, moved, scene};
 
 thread_local! {
     /// Whether this thread is in a render: a progress callback that drew again would wait for itself.
@@ -33,7 +33,7 @@ impl Renderer {
         self.0.adapter().clone().into()
     }
 
-    /// Passes by name and statistics.
+    /// Passes by name and statistics. `later` are the further time steps, `neighbours` the frames before and after, or nothing.
     #[expect(clippy::too_many_arguments, reason = "called from one place in the package, by position")]
     fn render<'py>(
         &self,
@@ -42,18 +42,30 @@ impl Renderer {
         lights: Vec<LightFields>,
         ambient: [f32; 3],
         camera: CameraFields,
+        later: Vec<StepFields<'py>>,
+        neighbours: Vec<StepFields<'py>>,
         settings: &Bound<'py, PyDict>,
         progress: Option<Py<PyAny>>,
     ) -> Result<(Bound<'py, PyDict>, Bound<'py, PyDict>), Failure> {
         let settings: SettingsItems = settings.extract().map_err(|error| Failure::Input(field_error(py, &error)))?;
         let settings = settings.settings()?;
-        let scene = scene(objects, lights, ambient, camera)?;
+        let mut steps = vec![scene(objects, lights, ambient, camera)?];
+        let neighbours = neighbours.into_iter().map(|step| moved(&steps[0], step)).collect::<Result<Vec<_>, _>>()?;
+        for step in later {
+            steps.push(moved(&steps[0], step)?);
+        }
+        let neighbours = match &neighbours[..] {
+            [before, after] => Some([before, after]),
+            _ => None,
+        };
+        let exposure = Exposure { steps: &steps, neighbours };
         if DRAWING.replace(true) {
             return Err(Failure::Input("render was called from a progress callback of another render".to_owned()));
         }
         let mut listener = Listener::new(progress);
         let result = detached(py, || {
-            self.0.render(&scene, &settings, &mut |done| listener.report(f64::from(done.done) / f64::from(done.total)))
+            self.0
+                .expose(&exposure, &settings, &mut |done| listener.report(f64::from(done.done) / f64::from(done.total)))
         });
         DRAWING.set(false);
         let image = listener.outcome(result)?;
@@ -71,6 +83,11 @@ fn passes<'py>(py: Python<'py>, image: Image) -> PyResult<Bound<'py, PyDict>> {
     passes.set_item("normal", array(py, image.normal.into_flattened(), &[height, width, 3])?)?;
     passes.set_item("tangent", array(py, image.tangent.into_flattened(), &[height, width, 3])?)?;
     passes.set_item("object_id", array(py, image.object_id, &[height, width])?)?;
+    for (aov, values) in image.aovs {
+        let shape = [height, width, aov.channels()];
+        let shape = if aov.channels() == 1 { &shape[..2] } else { &shape[..] };
+        passes.set_item(aov.name(), array(py, values, shape)?)?;
+    }
     Ok(passes)
 }
 

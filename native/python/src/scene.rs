@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
-use lisle_gpu::{Camera, Cone, Lens, Light, Object, Occlusion, Scene, Settings, Shading};
+use lisle_gpu::{Aov, Camera, Cone, Labels, Lens, Light, Object, Occlusion, Scene, Settings, Shading};
 use pyo3::prelude::*;
 
 use crate::error::Failure;
@@ -23,6 +23,9 @@ pub struct ObjectFields<'py> {
     world_from_object: Rows,
     object_id: u32,
     name: String,
+    object_index: u32,
+    material_name: String,
+    material_index: u32,
 }
 
 /// One of `lisle.Light`, by its attributes: the variants are told apart by what they have.
@@ -62,6 +65,7 @@ pub struct SettingsItems {
     shadow_resolution: u32,
     seed: u32,
     first_sample: u32,
+    passes: Vec<String>,
 }
 
 fn matrix(rows: Rows) -> DMat4 {
@@ -77,6 +81,11 @@ impl ObjectFields<'_> {
             yarn: Arc::new(extract_yarn(&self.yarn).map_err(of)?),
             material: Arc::new(extract_material(&self.material).map_err(of)?),
             world_from_object: matrix(self.world_from_object),
+            labels: Labels {
+                index: self.object_index,
+                material: self.material_name,
+                material_index: self.material_index,
+            },
             name: self.name,
         })
     }
@@ -146,6 +155,15 @@ pub fn scene(
     })
 }
 
+/// What moves: objects and camera.
+pub type StepFields<'py> = (Vec<ObjectFields<'py>>, CameraFields);
+
+/// A scene at another time.
+pub fn moved(scene: &Scene, (objects, camera): StepFields<'_>) -> Result<Scene, Failure> {
+    let objects = objects.into_iter().map(ObjectFields::object).collect::<Result<_, _>>()?;
+    Ok(Scene { objects, camera: camera.into(), ..scene.clone() })
+}
+
 /// A shading model by its name.
 pub fn shading(name: &str) -> Result<Shading, Failure> {
     match name {
@@ -164,6 +182,11 @@ impl SettingsItems {
             "table" => Occlusion::Table,
             other => return Err(Failure::Input(format!("occlusion: {other:?} is neither \"distance\" nor \"table\""))),
         };
+        let aov = |name: &String| {
+            let known = Aov::ALL.into_iter().find(|aov| aov.name() == name);
+            known.ok_or_else(|| Failure::Input(format!("passes: {name:?} is no pass that can be asked for")))
+        };
+        let aovs = self.passes.iter().map(aov).collect::<Result<_, _>>()?;
         Ok(Settings {
             size: self.size,
             region: self.region,
@@ -177,6 +200,7 @@ impl SettingsItems {
             shadow_resolution: self.shadow_resolution,
             seed: self.seed,
             first_sample: self.first_sample,
+            aovs,
         })
     }
 }

@@ -24,7 +24,7 @@ pub fn r2(index: u32, seed: u32, dimension: u32) -> [f64; 2] {
 pub fn lens_pair(index: u32, seed: u32) -> [f64; 2] {
     const SUPERGOLDEN: f64 = 1.465_571_231_876_768;
     /// Beside the dimensions of [`r2`].
-    const DIMENSION: u32 = 2;
+    const DIMENSION: u32 = 3;
     if index == 0 {
         return [0.5; 2];
     }
@@ -33,6 +33,18 @@ pub fn lens_pair(index: u32, seed: u32) -> [f64; 2] {
     };
     let i = f64::from(index);
     [(shift(0) + i / SUPERGOLDEN).fract(), (shift(1) + i / (SUPERGOLDEN * SUPERGOLDEN)).fract()]
+}
+
+/// Number `index` of the sequence for times, in [0, 1): multiples of the golden ratio, shifted by `seed`. The first is ½ for every seed.
+pub fn time(index: u32, seed: u32) -> f64 {
+    const GOLDEN: f64 = 1.618_033_988_749_895;
+    /// Beside the dimensions of [`r2`].
+    const DIMENSION: u32 = 4;
+    if index == 0 {
+        return 0.5;
+    }
+    let shift = if seed == 0 { 0.5 } else { unit_from_hash(hash_combine(seed, DIMENSION)) };
+    (shift + f64::from(index) / GOLDEN).fract()
 }
 
 /// A uniform direction.
@@ -93,6 +105,17 @@ mod tests {
         };
         assert!(correlation(&|i| lens_pair(i, 5)) < 0.02, "{}", correlation(&|i| lens_pair(i, 5)));
         assert!(correlation(&|i| r2(i, 5, 2)) > 0.1, "the test cannot fail");
+    }
+
+    #[test]
+    fn times_fill_the_shutter() {
+        assert_eq!((time(0, 0), time(0, 9)), (0.5, 0.5));
+        for seed in [0, 9] {
+            let mut times: Vec<_> = (0..32).map(|i| time(i, seed)).collect();
+            times.sort_by(f64::total_cmp);
+            let widest = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+            assert!(widest < 2.5 / 32.0, "{widest}");
+        }
     }
 
     #[test]

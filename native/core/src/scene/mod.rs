@@ -2,9 +2,11 @@
 
 mod lens;
 mod light;
+mod motion;
 
 pub use lens::Lens;
 pub use light::{Cone, Light};
+pub use motion::between;
 
 use std::sync::Arc;
 
@@ -30,6 +32,19 @@ pub struct Object {
     pub material: Arc<Material>,
     /// Object to world.
     pub world_from_object: DMat4,
+    /// What passes call it.
+    pub labels: Labels,
+}
+
+/// What passes call an object, besides its name and id.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Labels {
+    /// The object's index.
+    pub index: u32,
+    /// Name of its material.
+    pub material: String,
+    /// The material's index.
+    pub material_index: u32,
 }
 
 /// A camera: two matrices, and a lens if what is out of focus is blurred.

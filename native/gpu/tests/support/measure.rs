@@ -1,7 +1,7 @@
 //! Numbers from pictures.
 
 use glam::DVec3;
-use lisle_gpu::Image;
+use lisle_gpu::{Aov, Image};
 
 /// Whether two pictures have the same bits in every pass.
 pub fn identical(a: &Image, b: &Image) -> bool {
@@ -26,6 +26,14 @@ pub fn difference(a: &Image, b: &Image) -> Option<String> {
         .or_else(|| first("normal", &a.normal, &b.normal))
         .or_else(|| first("tangent", &a.tangent, &b.tangent))
         .or_else(|| first("object id", &object(a), &object(b)))
+        .or_else(|| {
+            type Pass = (Aov, Vec<f32>);
+            let differ = |((kind, a), (other, b)): (&Pass, &Pass)| {
+                let bits = |values: &[f32]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+                (kind != other || bits(a) != bits(b)).then(|| kind.name().to_owned())
+            };
+            a.aovs.iter().zip(&b.aovs).find_map(differ)
+        })
 }
 
 /// The part of a picture that a region (left, top, width, height) covers.
@@ -44,6 +52,14 @@ pub fn crop(image: &Image, [left, top, width, height]: [u32; 4]) -> Image {
         normal: cut(&image.normal, stride, region),
         tangent: cut(&image.tangent, stride, region),
         object_id: cut(&image.object_id, stride, region),
+        aovs: image
+            .aovs
+            .iter()
+            .map(|(aov, values)| {
+                let pixels: Vec<&[f32]> = values.chunks_exact(aov.channels()).collect();
+                (*aov, cut(&pixels, stride, region).concat())
+            })
+            .collect(),
         statistics: image.statistics.clone(),
     }
 }

@@ -16,7 +16,7 @@ use glam::{DMat4, DVec3, DVec4, Vec3};
 use lisle_core::scattering::Material;
 use lisle_core::yarn::Yarn;
 use lisle_core::{Curves, Yarns};
-use lisle_gpu::{Camera, Error, Image, Light, Object, Renderer, Scene, Settings};
+use lisle_gpu::{Camera, Error, Exposure, Image, Light, Object, Renderer, Scene, Settings};
 
 /// The renderer of this test binary, with a logger that [`draw`] consults.
 pub fn renderer() -> &'static Renderer {
@@ -45,6 +45,13 @@ pub fn draw_with(renderer: &Renderer, scene: &Scene, settings: &Settings) -> Ima
 /// Draws what may be refused.
 pub fn try_draw(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
     try_draw_with(renderer(), scene, settings)
+}
+
+/// Draws what moves.
+pub fn expose(exposure: &Exposure, settings: &Settings) -> Image {
+    let image = renderer().expose(exposure, settings, &mut |_| ControlFlow::Continue(())).expect("a picture");
+    quiet::assert_quiet();
+    image
 }
 
 fn try_draw_with(renderer: &Renderer, scene: &Scene, settings: &Settings) -> Result<Image, Error> {
@@ -82,6 +89,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: &Yarn) -> Object {
         yarn: Arc::new(yarn.clone()),
         material: Arc::new(Material::preset("cotton-2").expect("preset")),
         world_from_object: DMat4::IDENTITY,
+        labels: Default::default(),
     }
 }
 

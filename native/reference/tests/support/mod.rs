@@ -57,6 +57,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: &Yarn, material: Material) -> Object {
         yarn: Arc::new(yarn.clone()),
         material: Arc::new(material),
         world_from_object: DMat4::IDENTITY,
+        labels: Default::default(),
     }
 }
 

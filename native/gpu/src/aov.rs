@@ -1,0 +1,157 @@
+//! Passes that are drawn when asked for.
+
+use crate::cryptomatte;
+
+/// A pass beyond those that every picture has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Aov {
+    /// World space, of the sample at the pixel's centre; 0 where nothing is.
+    Position,
+    /// Along the yarn and around it, at the pixel's centre: length coordinate, and the angle from the yarn's normal in turns, 0 to 1.
+    Uv,
+    /// How far what is at the pixel's centre moves on the picture, pixels, X to the right, Y up: where it was in the frame before relative to
+    /// where it is, then where it is relative to where it will be. Needs [`crate::Exposure::neighbours`].
+    Vector,
+    /// `Labels::index` at the pixel's centre.
+    ObjectIndex,
+    /// `Labels::material_index` at the pixel's centre.
+    MaterialIndex,
+    /// Names of objects by coverage: pairs of id and share of the pixel, by falling share (`cryptomatte.rs`).
+    CryptoObject,
+    /// The same for `Labels::material`.
+    CryptoMaterial,
+    /// Share of light that a fiber there gives back under even light: colour without lighting, as denoisers want it. Premultiplied.
+    Albedo,
+    /// Mean normal, world space, not of unit length: as denoisers want it.
+    DenoisingNormal,
+}
+
+impl Aov {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Position,
+        Self::Uv,
+        Self::Vector,
+        Self::ObjectIndex,
+        Self::MaterialIndex,
+        Self::CryptoObject,
+        Self::CryptoMaterial,
+        Self::Albedo,
+        Self::DenoisingNormal,
+    ];
+
+    /// In small letters.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Uv => "uv",
+            Self::Vector => "vector",
+            Self::ObjectIndex => "object_index",
+            Self::MaterialIndex => "material_index",
+            Self::CryptoObject => "crypto_object",
+            Self::CryptoMaterial => "crypto_material",
+            Self::Albedo => "albedo",
+            Self::DenoisingNormal => "denoising_normal",
+        }
+    }
+
+    /// Values of a pixel.
+    pub fn channels(self) -> usize {
+        match self {
+            Self::ObjectIndex | Self::MaterialIndex => 1,
+            Self::Uv => 2,
+            Self::Position | Self::Albedo | Self::DenoisingNormal => 3,
+            Self::Vector => 4,
+            Self::CryptoObject | Self::CryptoMaterial => 2 * cryptomatte::LEVELS,
+        }
+    }
+}
+
+/// No such plane.
+pub(crate) const NO_PLANE: u32 = u32::MAX;
+
+/// Words of a pixel's place on its yarn, and of where it is on three pictures: `shaders/passes/aov.wgsl`.
+const VECTOR_WORDS: u32 = 11;
+/// The first of a neighbour's two words, from the vector's first plane on.
+pub(crate) const NEIGHBOUR_WORDS: [u32; 2] = [7, 9];
+
+/// Where the shaders write: planes of one word a pixel, one after the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Planes {
+    pub position: u32,
+    pub uv: u32,
+    pub vector: u32,
+    pub matte: u32,
+    pub albedo: u32,
+    pub count: u32,
+}
+
+impl Planes {
+    pub fn new(wanted: &[Aov]) -> Self {
+        let mut count = 0;
+        let mut plane = |of: &[Aov], words: u32| {
+            if !of.iter().any(|aov| wanted.contains(aov)) {
+                return NO_PLANE;
+            }
+            count += words;
+            count - words
+        };
+        let matte_words = 2 * cryptomatte::SLOTS as u32;
+        Self {
+            position: plane(&[Aov::Position], 3),
+            uv: plane(&[Aov::Uv], 2),
+            vector: plane(&[Aov::Vector], VECTOR_WORDS),
+            matte: plane(&[Aov::CryptoObject, Aov::CryptoMaterial], matte_words),
+            albedo: plane(&[Aov::Albedo], 3),
+            count,
+        }
+    }
+}
+
+/// What was read of a tile's planes.
+pub(crate) struct Tile<'a> {
+    pub planes: Planes,
+    pub words: &'a [u32],
+    pub pixels: usize,
+}
+
+impl Tile<'_> {
+    pub fn word(&self, plane: u32, pixel: usize) -> u32 {
+        self.words[plane as usize * self.pixels + pixel]
+    }
+
+    pub fn values<const N: usize>(&self, plane: u32, pixel: usize) -> [f32; N] {
+        std::array::from_fn(|i| f32::from_bits(self.word(plane + i as u32, pixel)))
+    }
+
+    /// Draws (the first is 1) and samples of a pixel's mattes.
+    pub fn matte(&self, pixel: usize) -> impl Iterator<Item = (u32, u32)> {
+        let slot = move |slot: u32| {
+            let plane = self.planes.matte + 2 * slot;
+            (self.word(plane, pixel), self.word(plane + 1, pixel))
+        };
+        (0..cryptomatte::SLOTS as u32).map(slot).take_while(|(draw, _)| *draw != 0)
+    }
+
+    /// Where a pixel's point was or will be, as differences on the picture.
+    pub fn vector(&self, pixel: usize) -> [f32; 4] {
+        let plane = self.planes.vector;
+        let [here, before, after]: [[f32; 2]; 3] = [5, 7, 9].map(|word| self.values(plane + word, pixel));
+        // Y of pixel space runs down.
+        [before[0] - here[0], here[1] - before[1], here[0] - after[0], after[1] - here[1]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes_follow_each_other() {
+        let none = Planes::new(&[Aov::ObjectIndex, Aov::DenoisingNormal]);
+        assert_eq!((none.count, none.position, none.matte), (0, NO_PLANE, NO_PLANE));
+        let some = Planes::new(&[Aov::CryptoMaterial, Aov::Uv, Aov::CryptoObject]);
+        assert_eq!((some.uv, some.matte, some.count), (0, 2, 2 + 2 * cryptomatte::SLOTS as u32));
+        assert_eq!(NEIGHBOUR_WORDS[1] + 2, VECTOR_WORDS);
+    }
+}

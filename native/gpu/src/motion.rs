@@ -1,0 +1,156 @@
+//! What moves while the shutter is open, and where things are in the frames before and after.
+
+use glam::DMat4;
+use lisle_core::scene::between;
+
+use crate::device::Gpu;
+use crate::upload::{Draws, Place, SceneBuffers, Shape, empty_storage};
+use crate::view::View;
+use crate::{Error, Object, Scene};
+
+/// A scene at one or several times.
+///
+/// Objects correspond by their order, and their yarns by their rest shape: [`lisle_core::strands::Yarns::with_points`]. Yarns, objects and
+/// camera move; all else is as at the first step.
+#[derive(Clone, Copy, Debug)]
+pub struct Exposure<'a> {
+    /// The scene at even steps from when the shutter opens to when it closes, at least one; between them everything moves evenly. What
+    /// belongs to the pixel's centre alone, depth for example, is of the middle of that time.
+    pub steps: &'a [Scene],
+    /// The scene one frame before, and one after: for [`crate::Aov::Vector`].
+    pub neighbours: Option<[&'a Scene; 2]>,
+}
+
+impl<'a> Exposure<'a> {
+    /// One moment.
+    pub fn still(scene: &'a Scene) -> Self {
+        Self { steps: std::slice::from_ref(scene), neighbours: None }
+    }
+}
+
+/// What is seen at one time, and from where.
+#[derive(Clone)]
+pub(crate) struct Moment {
+    pub view: View,
+    pub draws: Draws,
+}
+
+/// The steps, ready to be drawn at any time between them.
+pub(crate) struct Motion<'a> {
+    steps: &'a [Scene],
+    which: &'a [usize],
+    size: [u32; 2],
+    /// Of each step; none if no curve changes its shape.
+    pub shapes: Vec<Shape>,
+}
+
+/// A frame before or after.
+pub(crate) struct Neighbour {
+    pub moment: Moment,
+    pub shape: Shape,
+    pub draws: wgpu::Buffer,
+}
+
+/// Fails unless the objects of a scene are those of another, moved.
+fn check(scene: &Scene, other: &Scene, when: &str) -> Result<(), Error> {
+    if scene.objects.len() != other.objects.len() {
+        let (here, there) = (scene.objects.len(), other.objects.len());
+        return Err(Error::input(when, format!("{there} objects, expected {here} as at the first time")));
+    }
+    other.validate()?;
+    let moved = |(a, b): (&Object, &Object)| !crate::upload::same_rest(&a.yarns, &b.yarns);
+    match scene.objects.iter().zip(&other.objects).find(|pair| moved(*pair)) {
+        None => Ok(()),
+        Some((object, _)) => Err(Error::input(
+            format!("{when}, object \"{}\"", object.name),
+            "its yarns have another rest shape than at the first time: make them with with_points",
+        )),
+    }
+}
+
+impl<'a> Motion<'a> {
+    /// `which` is what [`SceneBuffers::update`] gave for the first step, that `buffers` hold.
+    pub fn new(
+        gpu: &Gpu,
+        steps: &'a [Scene],
+        which: &'a [usize],
+        size: [u32; 2],
+        buffers: &SceneBuffers,
+    ) -> Result<Self, Error> {
+        let mut deforms = false;
+        for (number, step) in steps.iter().enumerate().skip(1) {
+            check(&steps[0], step, &format!("time step {number}"))?;
+            let pairs = || steps[0].objects.iter().zip(&step.objects);
+            deforms |= pairs().any(|(a, b)| !std::ptr::eq(a.yarns.points(), b.yarns.points()));
+        }
+        let shape = |step: &Scene| buffers.shape_of(gpu, step, which);
+        let shapes = if deforms { steps.iter().map(shape).collect::<Result<_, _>>()? } else { Vec::new() };
+        Ok(Self { steps, which, size, shapes })
+    }
+
+    pub fn is_moving(&self) -> bool {
+        self.steps.len() > 1
+    }
+
+    /// The step before a time, 0 to 1, and the share of the way to the next.
+    pub fn step(&self, time: f64) -> (usize, f64) {
+        let place = time * (self.steps.len() - 1) as f64;
+        let step = (place as usize).min(self.steps.len().saturating_sub(2));
+        (step, place - step as f64)
+    }
+
+    /// What is seen at a time.
+    pub fn at(&self, buffers: &SceneBuffers, time: f64) -> Result<Moment, Error> {
+        if !self.is_moving() {
+            return Moment::new(buffers, &self.steps[0], self.which, self.size, &buffers.shape.places);
+        }
+        let (first, share) = self.step(time);
+        let (a, b) = (&self.steps[first], &self.steps[first + 1]);
+        let view = View::new(&a.camera.between(&b.camera, share), self.size)?;
+        let transforms = a.objects.iter().zip(&b.objects);
+        let transforms: Vec<DMat4> =
+            transforms.map(|(a, b)| between(&a.world_from_object, &b.world_from_object, share)).collect();
+        let places: Vec<Place> = match self.shapes.get(first..first + 2) {
+            Some([a, b]) => a.places.iter().zip(&b.places).map(|(a, b)| a.between(b, share)).collect(),
+            _ => buffers.shape.places.clone(),
+        };
+        let draws = buffers.draws(&self.steps[0], self.which, view.origin, &transforms, &places)?;
+        Ok(Moment { view, draws })
+    }
+}
+
+impl Moment {
+    fn new(
+        buffers: &SceneBuffers,
+        scene: &Scene,
+        which: &[usize],
+        size: [u32; 2],
+        places: &[Place],
+    ) -> Result<Self, Error> {
+        let view = View::new(&scene.camera, size)?;
+        let transforms: Vec<DMat4> = scene.objects.iter().map(|object| object.world_from_object).collect();
+        let draws = buffers.draws(scene, which, view.origin, &transforms, places)?;
+        Ok(Self { view, draws })
+    }
+}
+
+impl Neighbour {
+    /// Uploads a neighbouring frame.
+    pub fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        other: &Scene,
+        when: &str,
+        which: &[usize],
+        size: [u32; 2],
+        buffers: &SceneBuffers,
+    ) -> Result<Self, Error> {
+        check(scene, other, when)?;
+        let shape = buffers.shape_of(gpu, other, which)?;
+        let moment = Moment::new(buffers, other, which, size, &shape.places)?;
+        let items = &moment.draws.items;
+        let draws = empty_storage(gpu, "instances in another frame", size_of_val(&items[..]) as u64)?;
+        gpu.queue.write_buffer(&draws, 0, bytemuck::cast_slice(items));
+        Ok(Self { moment, shape, draws })
+    }
+}

@@ -1,0 +1,254 @@
+//! Passes that are drawn when asked for.
+
+mod support;
+
+use glam::{DMat4, DVec3, DVec4, Vec4Swizzles};
+use lisle_gpu::{Aov, Camera, Exposure, Image, Labels, Object, Scene, Settings, cryptomatte};
+use support::{
+    curves, draw, exact, expose, looking, measure, object, orthographic, perspective, preset, scene, yarns_of,
+};
+
+const SIZE: [u32; 2] = [96, 72];
+
+fn wave() -> Object {
+    object(&yarns_of(curves::wave(3.0, 0.5, 40), false, 0.12), &preset("cotton-1"))
+}
+
+fn front() -> Camera {
+    perspective(looking(DVec3::new(0.3, -5.0, 0.4), DVec3::ZERO), 0.25, SIZE, [0.1, 0.0])
+}
+
+fn settings(aovs: &[Aov]) -> Settings {
+    Settings { samples: 8, filter_width: 1.5, lod_pixels: 1.0, aovs: aovs.to_vec(), ..exact(SIZE) }
+}
+
+fn values(image: &Image, aov: Aov) -> impl Iterator<Item = &[f32]> {
+    let found = image.aovs.iter().find(|(known, _)| *known == aov);
+    found.expect("it was asked for").1.chunks_exact(aov.channels())
+}
+
+fn is_there(image: &Image) -> impl Iterator<Item = bool> + '_ {
+    image.depth.iter().map(|depth| *depth < Image::EMPTY_DEPTH)
+}
+
+/// Where a point of the world is on the picture, pixels, and its w.
+fn on_picture(camera: &Camera, point: DVec3) -> DVec3 {
+    let clip: DVec4 = camera.clip_from_camera * camera.world_from_camera.inverse() * point.extend(1.0);
+    let [width, height] = SIZE.map(f64::from);
+    DVec3::new((0.5 + 0.5 * clip.x / clip.w) * width, (0.5 - 0.5 * clip.y / clip.w) * height, clip.w)
+}
+
+fn still() -> Vec<Aov> {
+    Aov::ALL.into_iter().filter(|aov| *aov != Aov::Vector).collect()
+}
+
+#[test]
+fn what_is_not_asked_for_takes_nothing_and_changes_nothing() {
+    let scene = scene(vec![wave()], front());
+    let plain = draw(&scene, &settings(&[]));
+    assert!(plain.aovs.is_empty());
+    let mut full = draw(&scene, &settings(&still()));
+    assert!(full.statistics.gpu_bytes > plain.statistics.gpu_bytes);
+    let few = draw(&scene, &settings(&[Aov::ObjectIndex, Aov::DenoisingNormal]));
+    assert_eq!(few.statistics.gpu_bytes, plain.statistics.gpu_bytes);
+    full.aovs.clear();
+    assert_eq!(measure::difference(&full, &plain), None);
+}
+
+#[test]
+fn a_region_has_the_passes_of_the_whole() {
+    let scene = scene(vec![wave()], front());
+    let whole = draw(&scene, &settings(&still()));
+    let region = [30, 20, 41, 33];
+    let part = draw(&scene, &Settings { region: Some(region), ..settings(&still()) });
+    assert_eq!(measure::difference(&part, &measure::crop(&whole, region)), None);
+    let mut broken = part.clone();
+    broken.aovs[0].1[7] += 1.0;
+    assert!(measure::difference(&broken, &part).is_some());
+}
+
+#[test]
+fn positions_are_where_they_are_seen() {
+    for offset in [DVec3::ZERO, DVec3::new(2e3, -3e3, 1e3)] {
+        let shift = DMat4::from_translation(offset);
+        let camera = Camera { world_from_camera: shift * front().world_from_camera, ..front() };
+        let image =
+            draw(&scene(vec![Object { world_from_object: shift, ..wave() }], camera), &settings(&[Aov::Position]));
+        let mut seen = 0;
+        for ((i, position), depth) in values(&image, Aov::Position).enumerate().zip(&image.depth) {
+            if *depth == Image::EMPTY_DEPTH {
+                assert_eq!(position, [0.0; 3]);
+                continue;
+            }
+            let point = DVec3::new(position[0].into(), position[1].into(), position[2].into());
+            let found = on_picture(&camera, point);
+            let center = [(i as u32 % SIZE[0]) as f64 + 0.5, (i as u32 / SIZE[0]) as f64 + 0.5];
+            let off = (found.x - center[0]).hypot(found.y - center[1]);
+            assert!(off < 0.8, "pixel {i}: {off}");
+            assert!((found.z - f64::from(*depth)).abs() < 1e-3 * (1.0 + 0.01 * offset.length()), "{} {depth}", found.z);
+            seen += 1;
+        }
+        assert!(seen > 500, "{seen}");
+    }
+}
+
+#[test]
+fn uv_is_the_length_coordinate_and_the_angle() {
+    let camera = orthographic(looking(DVec3::new(0.0, -3.0, 0.0), DVec3::ZERO), 1.0, SIZE, [0.0, 0.0]);
+    // At twice the size: lengths are those of the object at rest.
+    let yarns = yarns_of(curves::straight(2.0, 30), false, 0.1);
+    let twice = DMat4::from_scale(DVec3::splat(2.0));
+    let thread = Object { world_from_object: twice, ..object(&yarns, &support::without_flyaways(preset("silk-1"))) };
+    let image = draw(&scene(vec![thread], camera), &settings(&[Aov::Uv, Aov::Position]));
+    let mut angles = Vec::new();
+    for ((uv, position), there) in values(&image, Aov::Uv).zip(values(&image, Aov::Position)).zip(is_there(&image)) {
+        if there {
+            assert!((uv[0] - (0.5 * position[0] + 1.0)).abs() < 0.002, "{uv:?} at {position:?}");
+            assert!((0.0..1.0).contains(&uv[1]));
+            // Y and Z about the yarn's axis, X.
+            angles.push((uv[1] - position[2].atan2(position[1]) / std::f32::consts::TAU).rem_euclid(1.0));
+        } else {
+            assert_eq!(uv, [0.0; 2]);
+        }
+    }
+    assert!(angles.len() > 1000);
+    let spread = |angle: &f32| (angle - angles[0] + 0.5).rem_euclid(1.0) - 0.5;
+    let most = angles.iter().map(|a| spread(a).abs()).fold(0.0, f32::max);
+    assert!(most < 0.01, "{most}");
+}
+
+#[test]
+fn vectors_point_from_frame_to_frame() {
+    let camera = orthographic(looking(DVec3::new(0.0, -3.0, 0.0), DVec3::ZERO), 2.0, SIZE, [0.0, 0.0]);
+    // Half a unit is 18 pixels.
+    let pixels = f64::from(SIZE[1]) / 2.0;
+    let (before, after) = (DVec3::new(-0.1, 0.3, -0.05), DVec3::new(0.2, 0.0, 0.1));
+    let expected = [before.x * pixels, before.z * pixels, -after.x * pixels, -after.z * pixels];
+    let wave = wave();
+    let here = scene(vec![wave.clone()], camera);
+    let by_object = |offset: DVec3| {
+        scene(vec![Object { world_from_object: DMat4::from_translation(offset), ..wave.clone() }], camera)
+    };
+    let by_points = |offset: DVec3| {
+        let mut moved = here.clone();
+        let shifted: Vec<[f32; 3]> =
+            wave.yarns.points().iter().map(|p| (glam::Vec3::from(*p) + offset.as_vec3()).to_array()).collect();
+        moved.objects[0].yarns =
+            std::sync::Arc::new(here.objects[0].yarns.with_points(&shifted).expect("as many points"));
+        moved
+    };
+    let by_camera = |offset: DVec3| {
+        let moved = DMat4::from_translation(-offset) * camera.world_from_camera;
+        scene(here.objects.clone(), Camera { world_from_camera: moved, ..camera })
+    };
+    type Move<'a> = &'a dyn Fn(DVec3) -> Scene;
+    for (what, moved) in [("object", &by_object as Move), ("points", &by_points), ("camera", &by_camera)] {
+        let [first, last] = [moved(before), moved(after)];
+        let exposure = Exposure { steps: std::slice::from_ref(&here), neighbours: Some([&first, &last]) };
+        let image = expose(&exposure, &settings(&[Aov::Vector]));
+        let mut seen = 0;
+        for (vector, there) in values(&image, Aov::Vector).zip(is_there(&image)) {
+            for (found, expected) in vector.iter().zip(expected) {
+                let expected = if there { expected } else { 0.0 };
+                assert!((f64::from(*found) - expected).abs() < 0.02, "{what}: {vector:?} for {expected}");
+            }
+            seen += u32::from(there);
+        }
+        assert!(seen > 500, "{what}: {seen}");
+        let still = draw(&here, &settings(&[]));
+        assert_eq!(image.combined, still.combined);
+    }
+    let error = support::renderer()
+        .render(&here, &settings(&[Aov::Vector]), &mut |_| std::ops::ControlFlow::Continue(()))
+        .expect_err("no frames before and after");
+    assert!(error.to_string().contains("vector"), "{error}");
+}
+
+#[test]
+fn a_winding_yarn_that_turns_is_followed() {
+    // Rotation about the view axis: positions before and after are those of the rotated points.
+    let camera = front();
+    let wave = wave();
+    let here = scene(vec![wave.clone()], camera);
+    let turn = |angle: f64| {
+        let turned = DMat4::from_rotation_y(angle);
+        scene(vec![Object { world_from_object: turned, ..wave.clone() }], camera)
+    };
+    let [first, last] = [turn(-0.05), turn(0.08)];
+    let exposure = Exposure { steps: std::slice::from_ref(&here), neighbours: Some([&first, &last]) };
+    let image = expose(&exposure, &settings(&[Aov::Vector, Aov::Position]));
+    let mut worst = 0.0_f64;
+    for ((vector, position), there) in
+        values(&image, Aov::Vector).zip(values(&image, Aov::Position)).zip(is_there(&image))
+    {
+        if there {
+            let point = DVec3::new(position[0].into(), position[1].into(), position[2].into());
+            let at = |angle: f64| on_picture(&camera, (DMat4::from_rotation_y(angle) * point.extend(1.0)).xyz());
+            let [before, now, after] = [at(-0.05), at(0.0), at(0.08)];
+            let expected = [before.x - now.x, now.y - before.y, now.x - after.x, after.y - now.y];
+            let off = vector.iter().zip(expected).map(|(v, e)| (f64::from(*v) - e).abs()).fold(0.0, f64::max);
+            worst = worst.max(off);
+        }
+    }
+    assert!(worst > 0.0 && worst < 0.05, "{worst} pixels");
+}
+
+fn labelled(name: &str, material: &str, index: u32, at: f64) -> Object {
+    Object {
+        name: name.into(),
+        id: index,
+        labels: Labels { index, material: material.into(), material_index: 10 * index },
+        world_from_object: DMat4::from_translation(DVec3::new(0.0, 0.4 * at, 0.12 * at)),
+        ..wave()
+    }
+}
+
+#[test]
+fn mattes_hold_the_coverage_of_every_name() {
+    let objects =
+        vec![labelled("left", "wool", 1, -1.0), labelled("right", "silk", 2, 0.0), labelled("left", "silk", 3, 1.0)];
+    let wanted = [Aov::CryptoObject, Aov::CryptoMaterial, Aov::ObjectIndex, Aov::MaterialIndex];
+    let image = draw(&scene(objects.clone(), front()), &settings(&wanted));
+    let id = |name: &str| cryptomatte::id(cryptomatte::hash(name));
+    let coverage = |aov: Aov, name: &str| -> f64 {
+        let of = |pairs: &[f32]| pairs.chunks(2).filter(|p| p[0] == id(name)).map(|p| f64::from(p[1])).sum::<f64>();
+        values(&image, aov).map(of).sum()
+    };
+    for (pairs, color) in values(&image, Aov::CryptoObject).zip(&image.combined) {
+        let sum: f32 = pairs.chunks(2).map(|pair| pair[1]).sum();
+        assert!((sum - color[3]).abs() < 1e-6, "{sum} of {}", color[3]);
+        assert!(pairs.chunks(2).is_sorted_by(|a, b| a[1] >= b[1]));
+    }
+    let area = measure::area(&image);
+    let sum = |aov, names: [&str; 2]| names.iter().map(|name| coverage(aov, name)).sum::<f64>();
+    assert!((sum(Aov::CryptoObject, ["left", "right"]) / area - 1.0).abs() < 1e-6);
+    assert!((sum(Aov::CryptoMaterial, ["wool", "silk"]) / area - 1.0).abs() < 1e-6);
+    // Without the others, the nearest object covers what its name does.
+    let nearest = draw(&scene(vec![labelled("x", "wool", 1, -1.0)], front()), &settings(&[]));
+    assert!((coverage(Aov::CryptoMaterial, "wool") / measure::area(&nearest) - 1.0).abs() < 1e-3);
+    for ((object, material), id) in
+        values(&image, Aov::ObjectIndex).zip(values(&image, Aov::MaterialIndex)).zip(&image.object_id)
+    {
+        assert_eq!((object[0], material[0]), (*id as f32, 10.0 * *id as f32));
+    }
+}
+
+#[test]
+fn denoisers_get_colour_without_light_and_normals() {
+    let mut scene = scene(vec![wave()], front());
+    let wanted = [Aov::Albedo, Aov::DenoisingNormal];
+    let lit = draw(&scene, &settings(&wanted));
+    scene.ambient = glam::Vec3::ZERO;
+    let dark = draw(&scene, &settings(&wanted));
+    assert_eq!(lit.aovs, dark.aovs);
+    assert!(measure::brightness(&dark) == 0.0);
+    for ((albedo, normal), (color, unit)) in
+        values(&lit, Aov::Albedo).zip(values(&lit, Aov::DenoisingNormal)).zip(lit.combined.iter().zip(&lit.normal))
+    {
+        let alpha = color[3];
+        assert!(albedo.iter().all(|c| *c <= alpha + 1e-6 && (alpha == 0.0 || *c > 0.02 * alpha)), "{albedo:?} {alpha}");
+        let normal = glam::Vec3::from_slice(normal);
+        assert!(normal.length() <= alpha + 1e-5);
+        assert!(normal.normalize_or_zero().distance((*unit).into()) < 1e-4);
+    }
+}
