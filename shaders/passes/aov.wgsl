@@ -59,7 +59,31 @@ fn material_albedo(draw: u32, surface: Surface) -> vec3f {
     return clamp(even.around + even.through, vec3f(0.0), vec3f(1.0));
 }
 
-fn add_aovs(index: u32, draw: u32, surface: Surface) {
+fn add_light(index: u32, shaded: Shaded) {
+    if frame.plane_diffuse != NO_PLANE {
+        add_aov(frame.plane_diffuse, index, shaded.once.diffuse);
+    }
+    if frame.plane_specular != NO_PLANE {
+        add_aov(frame.plane_specular, index, shaded.once.specular);
+    }
+    if frame.plane_transmission != NO_PLANE {
+        add_aov(frame.plane_transmission, index, shaded.once.transmission);
+    }
+    if frame.plane_scattered != NO_PLANE {
+        add_aov(frame.plane_scattered, index, shaded.scattered);
+    }
+    if frame.plane_ambient != NO_PLANE {
+        add_aov(frame.plane_ambient, index, shaded.ambient);
+    }
+    if frame.plane_shadow != NO_PLANE {
+        let word = aov_word(frame.plane_shadow, index);
+        let open = shaded.arriving / max(shaded.shining, 1e-30);
+        aov_planes[word] = bitcast<u32>(bitcast<f32>(aov_planes[word]) + open);
+    }
+}
+
+fn add_aovs(index: u32, draw: u32, surface: Surface, shaded: Shaded) {
+    add_light(index, shaded);
     if frame.plane_matte != NO_PLANE {
         add_matte(index, draw);
     }

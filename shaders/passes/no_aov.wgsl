@@ -1,3 +1,3 @@
 // Pictures without further passes.
 
-fn add_aovs(index: u32, draw: u32, surface: Surface) {}
+fn add_aovs(index: u32, draw: u32, surface: Surface, shaded: Shaded) {}

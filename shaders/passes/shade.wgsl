@@ -31,13 +31,13 @@ fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
 }
 
 // Radiance of a fiber per irradiance, by light scattered once.
-fn reflected_once(material: Material, surface: Surface, direction: vec3f, view: vec3f) -> vec3f {
+fn reflected_once(material: Material, surface: Surface, direction: vec3f, view: vec3f) -> Reflected {
     let angles = fiber_angles(surface.tangent, direction, view);
     let cos_normal = dot(surface.normal, direction);
     if frame.physical == 1u {
-        return physical_reflected(material, normalizers_at(material, angles.sin_theta_i), angles, cos_normal);
+        return physical_lobes(material, normalizers_at(material, angles.sin_theta_i), angles, cos_normal);
     }
-    return simple_reflected(material, angles, cos_normal);
+    return simple_lobes(material, angles, cos_normal);
 }
 
 // Share of the light behind a fiber, as its TT lobe takes it in, that the yarn's own fibers let through: at two azimuths, one deviation off.
@@ -103,7 +103,26 @@ fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, t
     return Passing(shadow.open + blocked * between_fibers, spread);
 }
 
-fn shade(draw: u32, surface: Surface) -> vec3f {
+// Radiance by what it comes from: light scattered once, by lobe, and more than once; and ambient light, however often it is scattered.
+struct Shaded {
+    once: Reflected,
+    scattered: vec3f,
+    ambient: vec3f,
+    // Luminance of the lights as it arrives, and without shadows.
+    arriving: f32,
+    shining: f32,
+}
+
+fn radiance_of(shaded: Shaded) -> vec3f {
+    return shaded.once.specular + shaded.once.transmission + shaded.once.diffuse + shaded.scattered + shaded.ambient;
+}
+
+// Of a colour in Rec. 709.
+fn luminance(color: vec3f) -> f32 {
+    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+fn shade(draw: u32, surface: Surface) -> Shaded {
     let yarn = yarns[draws[draw].yarn];
     let material = materials[draws[draw].material];
     let view = direction_to_viewer(frame.viewer, surface.position);
@@ -127,7 +146,7 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
         gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * albedo.albedo);
     }
     let around = look_around(yarn, surface, seen, transport, hidden, even);
-    var radiance = vec3f(0.0);
+    var shaded: Shaded;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = lights[i];
         let incident = incident_light(light, surface.position);
@@ -136,21 +155,27 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
         }
         let own = self_shadow(yarn, seen, incident.direction);
         let passing = passing_light(yarn, albedo.through, light, incident, surface.tube, surface.position);
-        radiance += reflected_once(material, surface, incident.direction, view) * incident.irradiance * (own * passing.straight);
+        let reflected = reflected_once(material, surface, incident.direction, view);
+        let straight = incident.irradiance * (own * passing.straight);
+        shaded.once.specular += reflected.specular * straight;
+        shaded.once.transmission += reflected.transmission * straight;
+        shaded.once.diffuse += reflected.diffuse * straight;
+        shaded.arriving += luminance(straight);
+        shaded.shining += luminance(incident.irradiance);
         if frame.multiple == 1u {
             // TT takes in what other yarns scatter as far as that half space is behind the fiber.
             let behind = 0.5 - 0.5 * dot(section_direction(section, incident.direction).unit, seen.view);
-            radiance += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own / PI);
+            shaded.scattered += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own / PI);
             // Fibers send each other light over about a yarn's radius, which blurs the shadows in it [Khungurn2017 §5.3.2]: another place for each sample.
             let aside = sky_direction(frame.sky_view);
             let place = surface.position + surface.tube.radius * (aside - incident.direction * dot(aside, incident.direction));
             let blurred = passing_light(yarn, albedo.through, light, incident, surface.tube, place);
             let arriving = incident.irradiance * (blurred.straight + blurred.spread);
-            radiance += transport_radiance(transport, section, incident.direction) * arriving * hidden;
+            shaded.scattered += transport_radiance(transport, section, incident.direction) * arriving * hidden;
             // Neighbours have the irradiance of this yarn.
             for (var k = 0u; k < frame.sky_view_count; k++) {
                 let cosine = -dot(sky_direction(frame.sky_view + k), incident.direction);
-                radiance += around.yarns[k] * yarn_radiance(draws[draw].transport, cosine) * arriving * gain;
+                shaded.scattered += around.yarns[k] * yarn_radiance(draws[draw].transport, cosine) * arriving * gain;
             }
         }
     }
@@ -162,7 +187,8 @@ fn shade(draw: u32, surface: Surface) -> vec3f {
             sky += around.yarns[k] * albedo.albedo * (CLOTH_OPEN * gain);
         }
     }
-    return radiance + frame.ambient * sky;
+    shaded.ambient = frame.ambient * sky;
+    return shaded;
 }
 
 // The key of a pixel taken apart.
@@ -184,7 +210,8 @@ fn winner_at(index: u32) -> Winner {
 
 fn add_surface(index: u32, draw: u32, surface: Surface) {
     let depth = to_pixel(frame.pixel_from_render, surface.position).w;
-    let color = vec4f(shade(draw, surface), 1.0);
+    let shaded = shade(draw, surface);
+    let color = vec4f(radiance_of(shaded), 1.0);
     add_sample(index, color, surface.normal, surface.tangent, depth, f32(draw + 1u));
-    add_aovs(index, draw, surface);
+    add_aovs(index, draw, surface, shaded);
 }

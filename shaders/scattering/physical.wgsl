@@ -11,19 +11,25 @@ fn schlick(cos_theta_i: f32) -> f32 {
     return x * x * x * x * x;
 }
 
-fn fiber_scattering(material: Material, normalizers: Normalizers, angles: FiberAngles) -> vec3f {
+// What a fiber gives back: by reflection (R, or the highlight), by transmission (TT), and by Lambert's term.
+struct Reflected {
+    specular: vec3f,
+    transmission: vec3f,
+    diffuse: vec3f,
+}
+
+// Radiance per irradiance on a plane that faces the light.
+fn physical_lobes(material: Material, normalizers: Normalizers, angles: FiberAngles, cos_normal_light: f32) -> Reflected {
     let f = material.color_r + (1.0 - material.color_r) * schlick(angles.cos_theta_i);
     let m_r = gaussian(angles.cone_offset, material.beta_r) / normalizers.integral_r;
     let m_tt = gaussian(angles.cone_offset, material.beta_tt) / normalizers.integral_tt;
     let n_tt = von_mises(angles.cos_phi, material.gamma_tt, material.azimuthal_tt);
-    return f * (AZIMUTHAL_UNIFORM * m_r) + (1.0 - f) * material.color_tt * (m_tt * n_tt);
-}
-
-// Radiance per irradiance on a plane that faces the light.
-fn physical_reflected(material: Material, normalizers: Normalizers, angles: FiberAngles, cos_normal_light: f32) -> vec3f {
-    let w = material.diffuse_weight;
-    return fiber_scattering(material, normalizers, angles) * ((1.0 - w) * angles.cos_theta_i)
-        + material.diffuse * (w / PI * max(cos_normal_light, 0.0));
+    let fiber = (1.0 - material.diffuse_weight) * angles.cos_theta_i;
+    return Reflected(
+        f * (AZIMUTHAL_UNIFORM * m_r * fiber),
+        (1.0 - f) * material.color_tt * (m_tt * n_tt * fiber),
+        material.diffuse * (material.diffuse_weight / PI * max(cos_normal_light, 0.0)),
+    );
 }
 
 // Radiance under even light: what is scattered to all sides, and what goes straight on.

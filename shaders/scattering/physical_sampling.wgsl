@@ -23,7 +23,7 @@ fn physical_albedo(material: Material, cos_theta_i: f32) -> vec3f {
     return mix(f + (1.0 - f) * material.color_tt, material.diffuse, material.diffuse_weight);
 }
 
-// The normalisers of `fiber_scattering` where no table is at hand.
+// The normalisers of `physical_lobes` where no table is at hand.
 fn exact_normalizers(material: Material, theta_i: f32) -> Normalizers {
     return Normalizers(gaussian_integral(theta_i, material.beta_r), gaussian_integral(theta_i, material.beta_tt));
 }

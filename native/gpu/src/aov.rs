@@ -20,6 +20,19 @@ pub enum Aov {
     CryptoObject,
     /// The same for `Labels::material`.
     CryptoMaterial,
+    /// Light of lamps scattered once, by the diffuse term. With the next four it adds up to the colour of the yarn. Premultiplied, all of
+    /// them.
+    Diffuse,
+    /// The same by reflection: R, or the highlight of simple shading.
+    Specular,
+    /// The same by transmission: TT.
+    Transmission,
+    /// Light of lamps scattered more than once.
+    Scattered,
+    /// Ambient light, however often it is scattered; without the background.
+    Ambient,
+    /// Share of the lamps' light, by luminance, that shadows of all kinds leave, 0 to 1. Premultiplied.
+    Shadow,
     /// Share of light that a fiber there gives back under even light: colour without lighting, as denoisers want it. Premultiplied.
     Albedo,
     /// Mean normal, world space, not of unit length: as denoisers want it.
@@ -28,7 +41,7 @@ pub enum Aov {
 
 impl Aov {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 15] = [
         Self::Position,
         Self::Uv,
         Self::Vector,
@@ -36,6 +49,12 @@ impl Aov {
         Self::MaterialIndex,
         Self::CryptoObject,
         Self::CryptoMaterial,
+        Self::Diffuse,
+        Self::Specular,
+        Self::Transmission,
+        Self::Scattered,
+        Self::Ambient,
+        Self::Shadow,
         Self::Albedo,
         Self::DenoisingNormal,
     ];
@@ -50,6 +69,12 @@ impl Aov {
             Self::MaterialIndex => "material_index",
             Self::CryptoObject => "crypto_object",
             Self::CryptoMaterial => "crypto_material",
+            Self::Diffuse => "diffuse",
+            Self::Specular => "specular",
+            Self::Transmission => "transmission",
+            Self::Scattered => "scattered",
+            Self::Ambient => "ambient",
+            Self::Shadow => "shadow",
             Self::Albedo => "albedo",
             Self::DenoisingNormal => "denoising_normal",
         }
@@ -58,11 +83,11 @@ impl Aov {
     /// Values of a pixel.
     pub fn channels(self) -> usize {
         match self {
-            Self::ObjectIndex | Self::MaterialIndex => 1,
+            Self::ObjectIndex | Self::MaterialIndex | Self::Shadow => 1,
             Self::Uv => 2,
-            Self::Position | Self::Albedo | Self::DenoisingNormal => 3,
             Self::Vector => 4,
             Self::CryptoObject | Self::CryptoMaterial => 2 * cryptomatte::LEVELS,
+            _ => 3,
         }
     }
 }
@@ -83,6 +108,12 @@ pub(crate) struct Planes {
     pub vector: u32,
     pub matte: u32,
     pub albedo: u32,
+    pub diffuse: u32,
+    pub specular: u32,
+    pub transmission: u32,
+    pub scattered: u32,
+    pub ambient: u32,
+    pub shadow: u32,
     pub count: u32,
 }
 
@@ -103,6 +134,12 @@ impl Planes {
             vector: plane(&[Aov::Vector], VECTOR_WORDS),
             matte: plane(&[Aov::CryptoObject, Aov::CryptoMaterial], matte_words),
             albedo: plane(&[Aov::Albedo], 3),
+            diffuse: plane(&[Aov::Diffuse], 3),
+            specular: plane(&[Aov::Specular], 3),
+            transmission: plane(&[Aov::Transmission], 3),
+            scattered: plane(&[Aov::Scattered], 3),
+            ambient: plane(&[Aov::Ambient], 3),
+            shadow: plane(&[Aov::Shadow], 1),
             count,
         }
     }

@@ -283,6 +283,12 @@ impl<'a> Recorder<'a> {
                 plane_vector: planes.vector,
                 plane_matte: planes.matte,
                 plane_albedo: planes.albedo,
+                plane_diffuse: planes.diffuse,
+                plane_specular: planes.specular,
+                plane_transmission: planes.transmission,
+                plane_scattered: planes.scattered,
+                plane_ambient: planes.ambient,
+                plane_shadow: planes.shadow,
                 ..Default::default()
             },
             filter: PixelFilter::new(settings.filter_width),
@@ -663,6 +669,7 @@ impl<'a> Recorder<'a> {
                         let found = planes.matte(from).map(|(draw, count)| (ids[draw as usize - 1], count));
                         cryptomatte::ranks(found, samples)
                     };
+                    let mean = |plane: u32| planes.values::<3>(plane, from).map(|sum| sum * scale);
                     let value = &mut values[aov.channels() * to..][..aov.channels()];
                     match aov {
                         Aov::Position if object.is_some() => {
@@ -679,10 +686,13 @@ impl<'a> Recorder<'a> {
                         }
                         Aov::CryptoObject => value.copy_from_slice(&matte(&ids[0])),
                         Aov::CryptoMaterial => value.copy_from_slice(&matte(&ids[1])),
-                        Aov::Albedo => {
-                            let sum = planes.values::<3>(planes.planes.albedo, from);
-                            value.copy_from_slice(&sum.map(|c| c * scale));
-                        }
+                        Aov::Shadow => value[0] = planes.values::<1>(planes.planes.shadow, from)[0] * scale,
+                        Aov::Diffuse => value.copy_from_slice(&mean(planes.planes.diffuse)),
+                        Aov::Specular => value.copy_from_slice(&mean(planes.planes.specular)),
+                        Aov::Transmission => value.copy_from_slice(&mean(planes.planes.transmission)),
+                        Aov::Scattered => value.copy_from_slice(&mean(planes.planes.scattered)),
+                        Aov::Ambient => value.copy_from_slice(&mean(planes.planes.ambient)),
+                        Aov::Albedo => value.copy_from_slice(&mean(planes.planes.albedo)),
                         Aov::DenoisingNormal => {
                             let [x, y, z, _] = normal[from];
                             value.copy_from_slice(&[x, y, z].map(|c| c * scale));

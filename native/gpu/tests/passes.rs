@@ -3,7 +3,8 @@
 mod support;
 
 use glam::{DMat4, DVec3, DVec4, Vec4Swizzles};
-use lisle_gpu::{Aov, Camera, Exposure, Image, Labels, Object, Scene, Settings, cryptomatte};
+use lisle_core::scattering::Material;
+use lisle_gpu::{Aov, Camera, Exposure, Image, Labels, Object, Scene, Settings, Shading, cryptomatte};
 use support::{
     curves, draw, exact, expose, looking, measure, object, orthographic, perspective, preset, scene, yarns_of,
 };
@@ -251,4 +252,54 @@ fn denoisers_get_colour_without_light_and_normals() {
         assert!(normal.length() <= alpha + 1e-5);
         assert!(normal.normalize_or_zero().distance((*unit).into()) < 1e-4);
     }
+}
+
+#[test]
+fn components_add_up_to_the_picture() {
+    let parts = [Aov::Diffuse, Aov::Specular, Aov::Transmission, Aov::Scattered, Aov::Ambient];
+    let material = Material { diffuse_weight: 0.3, ..*wave().material };
+    let mut scene = scene(vec![Object { material: material.into(), ..wave() }], front());
+    scene.lights = vec![support::sun([1.0, 1.0, -1.0], 2.0), support::sun([-1.0, 0.5, -0.2], 1.0)];
+    for shading in [Shading::Physical, Shading::Simple] {
+        let mut wanted = parts.to_vec();
+        wanted.push(Aov::Shadow);
+        let settings = Settings { shading, transport_photons: 20_000, ..settings(&wanted) };
+        let image = draw(&scene, &settings);
+        let mut sums = vec![[0.0_f32; 3]; image.combined.len()];
+        for aov in parts {
+            let mut total = 0.0;
+            for (sum, value) in sums.iter_mut().zip(values(&image, aov)) {
+                assert!(value.iter().all(|v| v.is_finite() && *v >= 0.0));
+                total += value.iter().sum::<f32>();
+                sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value);
+            }
+            let is_there = shading == Shading::Physical || !matches!(aov, Aov::Transmission | Aov::Scattered);
+            assert_eq!(total > 0.0, is_there, "{aov:?}");
+        }
+        for (sum, color) in sums.iter().zip(&image.combined) {
+            for (sum, color) in sum.iter().zip(color) {
+                assert!((sum - color).abs() <= 1e-5 * (1.0 + color), "{sum} of {color}");
+            }
+        }
+        assert!(
+            values(&image, Aov::Shadow)
+                .zip(&image.combined)
+                .all(|(open, color)| (0.0..=color[3] + 1e-5).contains(&open[0]))
+        );
+    }
+    // Yarn alone in the light, and behind a wall of yarn.
+    let shaded = |objects: Vec<Object>| -> f64 {
+        let scene = Scene { objects, lights: vec![support::sun([0.0, 0.0, -1.0], 2.0)], ..scene.clone() };
+        let image = draw(&scene, &Settings { transport_photons: 0, ..settings(&[Aov::Shadow]) });
+        let open = values(&image, Aov::Shadow).zip(&image.object_id).filter(|(_, id)| **id == 1);
+        let (sum, count) = open.fold((0.0, 0.0), |(s, n), (v, _)| (s + f64::from(v[0]), n + 1.0));
+        sum / count
+    };
+    let roof = Object {
+        id: 2,
+        world_from_object: DMat4::from_translation(DVec3::new(0.0, 0.0, 3.0)),
+        ..object(&yarns_of(curves::straight(9.0, 20), false, 1.0), &preset("cotton-1"))
+    };
+    let (alone, under) = (shaded(vec![wave()]), shaded(vec![wave(), roof]));
+    assert!(under < 0.5 * alone, "{under} of {alone}");
 }

@@ -20,6 +20,12 @@ FURTHER_PASSES = (
     "material_index",
     "crypto_object",
     "crypto_material",
+    "diffuse",
+    "specular",
+    "transmission",
+    "scattered",
+    "ambient",
+    "shadow",
     "albedo",
     "denoising_normal",
 )
@@ -42,8 +48,11 @@ CHANNELS = {
     "vector": ("vector.X", "vector.Y", "vector.Z", "vector.W"),
     "object_index": ("object_index",),
     "material_index": ("material_index",),
-    "albedo": ("albedo.R", "albedo.G", "albedo.B"),
+    "shadow": ("shadow",),
     "denoising_normal": ("denoising_normal.X", "denoising_normal.Y", "denoising_normal.Z"),
+} | {
+    name: tuple(f"{name}.{channel}" for channel in "RGB")
+    for name in ("diffuse", "specular", "transmission", "scattered", "ambient", "albedo")
 } | {
     name: tuple(f"{layer}{rank:02}.{channel}" for rank in range(3) for channel in "RGBA")
     for name, layer in CRYPTOMATTES.items()
@@ -76,6 +85,10 @@ class Image(Mapping[str, npt.NDArray[Any]]):
     | material_index * | (h, w) f32 | `Object.material_index` |
     | crypto_object | (h, w, 12) f32 | six pairs of id and coverage, for `Object.name`, as Cryptomatte has them |
     | crypto_material | (h, w, 12) f32 | the same for `Object.material_name` |
+    | diffuse, specular, transmission | (h, w, 3) f32 | light of lamps scattered once, by the lobe of the fiber |
+    | scattered | (h, w, 3) f32 | light of lamps scattered more than once |
+    | ambient | (h, w, 3) f32 | ambient light; with those above it adds up to the colour of the yarn |
+    | shadow | (h, w) f32 | share of the lamps' light that shadows leave, premultiplied |
     | albedo | (h, w, 3) f32 | colour without light, premultiplied, for a denoiser |
     | denoising_normal | (h, w, 3) f32 | mean normal, world space, not of unit length |
 

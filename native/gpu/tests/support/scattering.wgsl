@@ -36,15 +36,19 @@ fn thread_terms_at(theta: f32) -> vec2f {
     return vec2f(thread_table(1u, theta), thread_table(2u, theta));
 }
 
+fn all_lobes(reflected: Reflected) -> vec3f {
+    return reflected.specular + reflected.transmission + reflected.diffuse;
+}
+
 fn evaluate(viewer: vec3f, light: vec3f) -> vec3f {
     let frame = fiber_frame(vec3f(0.0, 0.0, 1.0), vec3f(1.0, 0.0, 0.3));
     let local_light = transpose(frame) * light;
     let angles = fiber_angles(frame[2], light, viewer);
     switch parameters.model {
-        case 0u: { return simple_reflected(parameters.material, angles, local_light.x); }
+        case 0u: { return all_lobes(simple_lobes(parameters.material, angles, local_light.x)); }
         case 1u: {
             let normalizers = exact_normalizers(parameters.material, longitude(local_light));
-            return physical_reflected(parameters.material, normalizers, angles, local_light.x);
+            return all_lobes(physical_lobes(parameters.material, normalizers, angles, local_light.x));
         }
         default: {
             let limits = vec2f(thread_table(0u, longitude(light)), thread_table(0u, longitude(viewer)));
