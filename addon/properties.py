@@ -10,7 +10,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProp
 
 from . import native
 from .core.errors import NativeError
-from .presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS
+from .presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS, number_of, thumbnails
+from .presets.thumbnails import items_of
 
 
 def _tag(group, _context):
@@ -62,8 +63,8 @@ class LisleYarn(bpy.types.PropertyGroup):
     preset: EnumProperty(
         name="Yarn",
         description="The measured yarn it is spun like",
-        items=YARN_ITEMS,
-        default=DEFAULT_YARN,
+        items=items_of("yarn", YARN_ITEMS),
+        default=number_of(DEFAULT_YARN, YARN_ITEMS),
         update=_fill_from_preset,
     )
     customize: BoolProperty(
@@ -147,8 +148,8 @@ class LisleFiber(bpy.types.PropertyGroup):
     preset: EnumProperty(
         name="Fiber",
         description="The measured fiber it scatters light like",
-        items=FIBER_ITEMS,
-        default=DEFAULT_FIBER,
+        items=items_of("fiber", FIBER_ITEMS),
+        default=number_of(DEFAULT_FIBER, FIBER_ITEMS),
         update=_fill_from_preset,
     )
     customize: BoolProperty(
@@ -324,6 +325,7 @@ _OWNERS = (
 
 
 def register():
+    thumbnails.register()
     for group in _GROUPS:
         bpy.utils.register_class(group)
     for owner, group in _OWNERS:
@@ -335,3 +337,4 @@ def unregister():
         del owner.lisle
     for group in reversed(_GROUPS):
         bpy.utils.unregister_class(group)
+    thumbnails.unregister()

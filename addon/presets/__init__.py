@@ -38,3 +38,8 @@ FIBER_ITEMS = (
 DEFAULT_YARN = "cotton-1"
 DEFAULT_FIBER = "cotton-1"
 """What an object without any setting is made of."""
+
+
+def number_of(name, items):
+    """What is stored of a preset."""
+    return next(item[3] for item in items if item[0] == name)

@@ -16,6 +16,7 @@ class _MaterialPanel(LislePanel):
 
 
 def _draw_preset(layout, group):
+    layout.template_icon_view(group, "preset", show_labels=True, scale=5, scale_popup=6)
     layout.prop(group, "preset")
     layout.prop(group, "customize")
 

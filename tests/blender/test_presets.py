@@ -14,6 +14,32 @@ def test_every_native_preset_has_an_entry_and_none_is_made_up(addon, lisle):
         assert [item[3] for item in items] == list(range(len(items)))
 
 
+def test_every_preset_has_a_picture_of_its_own(addon):
+    import bpy
+
+    thumbnails = addon.presets.thumbnails
+    for kind in ("yarn", "fiber"):
+        files = sorted(path.stem for path in (thumbnails.FOLDER / kind).glob("*.webp"))
+        assert files == sorted(item[0] for item in getattr(addon.presets, f"{kind.upper()}_ITEMS"))
+        for path in (thumbnails.FOLDER / kind).glob("*.webp"):
+            assert path.stat().st_size <= 20_000
+            image = bpy.data.images.load(str(path))
+            assert tuple(image.size) == (160, 160) and len(set(image.pixels[:4000])) > 10
+            bpy.data.images.remove(image)
+
+
+def test_presets_survive_the_extension_being_turned_off_and_on(addon):
+    import bpy
+
+    material = bpy.data.materials.new("Material")
+    material.lisle.yarn.preset = "silk-2"
+    addon.unregister()
+    assert not hasattr(material, "lisle")
+    addon.register()
+    assert material.lisle.yarn.preset == "silk-2"
+    assert bpy.data.materials.new("Other").lisle.fiber.preset == addon.presets.DEFAULT_FIBER
+
+
 def test_customized_presets_are_the_presets(addon, lisle):
     """Each preset, copied into Blender's properties and back, is the same to single precision."""
     import bpy

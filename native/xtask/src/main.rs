@@ -1,4 +1,4 @@
-//! `cargo xtask demo | test | bench | fidelity | package`: everything that one command has to do on a fresh machine.
+//! `cargo xtask demo | test | bench | fidelity | thumbnails | package`: everything that one command has to do on a fresh machine.
 //!
 //! Set-up is done once and remembered with stamps under `target/`; a second run goes straight to the work.
 
@@ -12,6 +12,7 @@ mod fidelity;
 mod python;
 mod shell;
 mod test;
+mod thumbnails;
 mod vulkan;
 mod wheel;
 
@@ -26,6 +27,7 @@ cargo xtask COMMAND
   test     every test: Rust, Python, inside Blender; formatting and lints; the extension's manifest
   bench    the benchmark; further arguments go to it
   fidelity the renderer beside the path tracer: out/fidelity/; further arguments go to it
+  thumbnails  the pictures of presets in addon/presets/thumbnails/; names of presets limit it to those
   package  build the Blender extension with its wheel: target/extension/
 ";
 
@@ -38,6 +40,7 @@ fn main() -> ExitCode {
         (Some("test"), []) => test::run(),
         (Some("bench"), rest) => bench::run(rest),
         (Some("fidelity"), rest) => fidelity::run(rest),
+        (Some("thumbnails"), rest) => thumbnails::draw(rest),
         (Some("package"), []) => package(),
         (Some("help" | "--help" | "-h"), _) => {
             print!("{USAGE}");
