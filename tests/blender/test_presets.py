@@ -24,7 +24,7 @@ def test_every_preset_has_a_picture_of_its_own(addon):
         for path in (thumbnails.FOLDER / kind).glob("*.webp"):
             assert path.stat().st_size <= 20_000
             image = bpy.data.images.load(str(path))
-            assert tuple(image.size) == (160, 160) and len(set(image.pixels[:4000])) > 10
+            assert tuple(image.size) == (160, 160) and len(set(image.pixels)) > 100
             bpy.data.images.remove(image)
 
 
