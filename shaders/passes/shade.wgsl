@@ -80,7 +80,7 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
 // Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
 const CLOTH_OPEN: f32 = 0.5;
 
-// Yarns that a light goes through at most: the way to the nearest yarn of the map is known, not what of it is yarn and what is air.
+// Yarns that light goes straight through at most: the way to the nearest yarn of the map is known, not what of it is yarn and what is air.
 const MOST_YARNS_ABOVE: f32 = 3.0;
 
 // What other yarns leave of a light.
@@ -93,12 +93,13 @@ struct Passing {
 
 fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, tube: Tube, position: vec3f) -> Passing {
     let shadow = light_shadow(light, incident, tube, position);
-    let yarns_above = clamp(shadow.way / (2.0 * tube.radius), 1.0, MOST_YARNS_ABOVE);
-    let between_fibers = pow(yarn.through_circle, yarns_above);
+    let yarns_above = max(shadow.way / (2.0 * tube.radius), 1.0);
+    let between_fibers = pow(yarn.through_circle, min(yarns_above, MOST_YARNS_ABOVE));
     let blocked = 1.0 - shadow.open;
     var spread = vec3f(0.0);
     if frame.multiple == 1u {
-        spread = blocked * max(pow(through, vec3f(yarns_above)) - between_fibers, vec3f(0.0));
+        // Through air it is spread as well, so that all of the way counts.
+        spread = blocked * max(pow(through, vec3f(yarns_above)) - pow(yarn.through_circle, yarns_above), vec3f(0.0));
     }
     return Passing(shadow.open + blocked * between_fibers, spread);
 }

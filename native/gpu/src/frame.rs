@@ -400,7 +400,7 @@ impl<'a> Recorder<'a> {
             for sample in 0..samples {
                 self.sample(*tile, sample)?;
                 let done = number as u32 * samples + sample + 1;
-                if progress(Progress { done, total }).is_break() {
+                if progress(Progress::Samples { done, total }).is_break() {
                     return Err(Error::Cancelled);
                 }
             }

@@ -1,7 +1,10 @@
 //! The renderer: one device, and what it keeps between pictures.
 
 use std::ops::ControlFlow;
-use std::sync::Mutex;
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use lisle_precompute::TransportStore;
 
 use crate::aov::{NO_PLANE, Planes};
 use crate::device::Gpu;
@@ -15,11 +18,21 @@ use crate::{AdapterInfo, Aov, Error, Exposure, Image, Scene, Settings};
 
 /// How far a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Progress {
-    /// Samples per pixel done, over all tiles: at most `total`.
-    pub done: u32,
-    /// Samples per pixel × tiles.
-    pub total: u32,
+pub enum Progress {
+    /// Tables of multiple scattering, for yarns and materials that were never drawn before: steps of some hundredths of a second.
+    Tables {
+        /// Steps done, at most `total`.
+        done: u32,
+        /// Steps of all tables.
+        total: u32,
+    },
+    /// Samples per pixel.
+    Samples {
+        /// Done, over all tiles: at most `total`.
+        done: u32,
+        /// Samples per pixel × tiles.
+        total: u32,
+    },
 }
 
 /// Draws scenes on one adapter. Thread-safe: pictures are drawn one at a time.
@@ -60,12 +73,24 @@ impl Renderer {
         Ok(Self { gpu, pipelines, state: Mutex::default() })
     }
 
+    /// Keeps tables of multiple scattering in a folder, for later sessions.
+    #[must_use]
+    pub fn with_store(self, folder: impl Into<PathBuf>) -> Self {
+        self.lock().tables.store = Some(TransportStore::new(folder));
+        self
+    }
+
+    /// A panic elsewhere leaves at worst stale buffers behind, which an update replaces.
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// The adapter in use.
     pub fn adapter(&self) -> &AdapterInfo {
         &self.gpu.info
     }
 
-    /// Draws a picture. `progress` is called after every sample and can stop the work.
+    /// Draws a picture. `progress` is called after every sample, and before them while tables are made, and can stop the work.
     ///
     /// The same scene and settings give the same bits on one adapter, whatever was drawn before.
     ///
@@ -99,11 +124,18 @@ impl Renderer {
             return Err(Error::input("vector", "this pass needs the scenes of the frames before and after"));
         }
         let planes = Planes::new(&settings.aovs);
-        // A panic elsewhere leaves at worst stale buffers behind, which the update below replaces.
-        let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut state = self.lock();
         let State { tables, scene: kept_scene, frame: kept_frame } = &mut *state;
-        let (mut buffers, which) =
-            SceneBuffers::update(&self.gpu, kept_scene.take(), scene, settings.photons(), tables)?;
+        let transports = match settings.photons() {
+            0 => Vec::new(),
+            photons => {
+                let found =
+                    tables.transports(scene, photons, &mut |done, total| progress(Progress::Tables { done, total }));
+                let ControlFlow::Continue(transports) = found else { return Err(Error::Cancelled) };
+                transports
+            }
+        };
+        let (mut buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, &transports, tables)?;
         let motion = Motion::new(&self.gpu, exposure.steps, &which, settings.size, &buffers)?;
         let neighbours = exposure.neighbours.filter(|_| planes.vector != NO_PLANE).map(|[before, after]| {
             let neighbour =

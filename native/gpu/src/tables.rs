@@ -1,13 +1,14 @@
 //! Yarn kinds and materials as the shaders read them, with all their tables in one buffer.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use glam::{DVec3, Vec4};
 use lisle_core::scattering::{Material, ScatteringTables, highlight_scale};
 use lisle_core::yarn::{FiberTable, Variate, Yarn};
-use lisle_precompute::{Tables, Transport};
+use lisle_precompute::{Tables, Transport, TransportStore};
 
-use crate::layout;
+use crate::{Object, Scene, layout};
 
 /// Two values in [−1, 1] as WGSL's `unpack2x16snorm` reads them.
 fn pack_snorm([low, high]: [f32; 2]) -> u32 {
@@ -189,12 +190,13 @@ impl<K, V> Default for Recent<K, V> {
 }
 
 impl<K: PartialEq, V> Recent<K, V> {
-    fn get(&mut self, key: K, make: impl FnOnce(&K) -> V) -> Arc<V> {
+    fn find(&self, key: &K) -> Option<Arc<V>> {
+        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| Arc::clone(value))
+    }
+
+    fn keep(&mut self, key: K, value: V) -> Arc<V> {
         const KEPT: usize = 32;
-        if let Some((_, value)) = self.0.iter().find(|(known, _)| *known == key) {
-            return Arc::clone(value);
-        }
-        let value = Arc::new(make(&key));
+        let value = Arc::new(value);
         if self.0.len() == KEPT {
             self.0.remove(0);
         }
@@ -203,21 +205,75 @@ impl<K: PartialEq, V> Recent<K, V> {
     }
 }
 
+/// Multiple scattering for a kind of yarn and a material of a scene.
+pub(crate) struct SceneTransport {
+    pub yarn: Arc<Yarn>,
+    pub material: Arc<Material>,
+    pub table: Arc<Transport>,
+}
+
+/// What a table of multiple scattering is made from, and with how many photons.
+type TransportKey = (Yarn, Material, u32);
+
 /// Precomputed tables of recent yarns and materials, so that a change of camera costs none of them.
 #[derive(Default)]
 pub(crate) struct TableCache {
     yarns: Recent<Yarn, Tables>,
-    transports: Recent<(Yarn, Material, u32), Transport>,
+    transports: Recent<TransportKey, Transport>,
+    pub store: Option<TransportStore>,
 }
 
 impl TableCache {
     pub fn yarn(&mut self, yarn: &Yarn) -> Arc<Tables> {
-        self.yarns.get(yarn.clone(), Tables::new)
+        self.yarns.find(yarn).unwrap_or_else(|| self.yarns.keep(yarn.clone(), Tables::new(yarn)))
     }
 
-    pub fn transport(&mut self, yarn: &Yarn, material: &Material, photons: u32) -> Arc<Transport> {
-        let key = (yarn.clone(), *material, photons);
-        self.transports.get(key, |(yarn, material, photons)| Transport::new(yarn, material, *photons))
+    /// A table that was made before, in this session or another.
+    fn known_transport(&mut self, key: &TransportKey) -> Option<Arc<Transport>> {
+        self.transports.find(key).or_else(|| {
+            let kept = self.store.as_ref()?.load(&key.0, &key.1, key.2)?;
+            Some(self.transports.keep(key.clone(), kept))
+        })
+    }
+
+    /// The tables of a scene's yarns and materials. `step` is told how many steps are done, of how many that there are to do for those not known.
+    pub fn transports(
+        &mut self,
+        scene: &Scene,
+        photons: u32,
+        step: &mut dyn FnMut(u32, u32) -> ControlFlow<()>,
+    ) -> ControlFlow<(), Vec<SceneTransport>> {
+        let mut wanted: Vec<(&Arc<Yarn>, &Arc<Material>)> = Vec::new();
+        for Object { yarn, material, .. } in &scene.objects {
+            if !wanted.contains(&(yarn, material)) {
+                wanted.push((yarn, material));
+            }
+        }
+        let known: Vec<_> = wanted
+            .iter()
+            .map(|(yarn, material)| self.known_transport(&((***yarn).clone(), ***material, photons)))
+            .collect();
+        let unknown = known.iter().filter(|table| table.is_none()).count() as u32;
+        let (mut done, total) = (0, unknown * Transport::batches(photons));
+        let mut tables = Vec::with_capacity(wanted.len());
+        for ((yarn, material), known) in wanted.into_iter().zip(known) {
+            let table = match known {
+                Some(table) => table,
+                None => {
+                    let made = Transport::new(yarn, material, photons, &mut || {
+                        done += 1;
+                        step(done, total)
+                    })?;
+                    if let Some(store) = &self.store {
+                        // A folder that cannot be written costs the next session time, this one nothing.
+                        let _ = store.save(yarn, material, photons, &made);
+                    }
+                    self.transports.keep(((**yarn).clone(), **material, photons), made)
+                }
+            };
+            tables.push(SceneTransport { yarn: Arc::clone(yarn), material: Arc::clone(material), table });
+        }
+        ControlFlow::Continue(tables)
     }
 }
 

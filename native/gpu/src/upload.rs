@@ -9,11 +9,12 @@ use lisle_core::sampling::hash_combine;
 use lisle_core::scattering::Material;
 use lisle_core::strands::Yarns;
 use lisle_core::yarn::Yarn;
+use lisle_precompute::Transport;
 
 use crate::device::Gpu;
 use crate::knots::{MovingKnots, RestKnots};
 use crate::layout;
-use crate::tables::{TableBuffer, TableCache, bound};
+use crate::tables::{SceneTransport, TableBuffer, TableCache, bound};
 use crate::view::Bounds;
 use crate::{Error, Object, Scene};
 
@@ -70,8 +71,7 @@ pub(crate) struct SceneBuffers {
     uploads: Vec<Upload>,
     kinds: Vec<Arc<Yarn>>,
     materials: Vec<Arc<Material>>,
-    /// Kinds, materials and photons of the tables of multiple scattering, and their offsets.
-    transports: Vec<(TransportKey, u32)>,
+    transports: Vec<UploadedTransport>,
     pub shape: Shape,
     /// Whether the shape is none that was uploaded, but one between two.
     pub displaced: bool,
@@ -83,8 +83,13 @@ pub(crate) struct SceneBuffers {
     pub uploaded_bytes: u64,
 }
 
-/// A kind of yarn, a material, both by index, and photons.
-type TransportKey = (u32, u32, u32);
+/// A table of multiple scattering, the kind of yarn and the material that it is for, and its offset.
+struct UploadedTransport {
+    table: Arc<Transport>,
+    yarn: u32,
+    material: u32,
+    offset: u32,
+}
 
 /// The instances to draw.
 #[derive(Clone)]
@@ -165,7 +170,7 @@ impl SceneBuffers {
         gpu: &Gpu,
         previous: Option<Self>,
         scene: &Scene,
-        transport_photons: u32,
+        transports: &[SceneTransport],
         cache: &mut TableCache,
     ) -> Result<(Self, Vec<usize>), Error> {
         let (mut kinds, mut materials) = (Vec::new(), Vec::new());
@@ -185,25 +190,26 @@ impl SceneBuffers {
             }
             None => Self::upload(gpu, &sets)?,
         };
-        let mut transports = Vec::new();
-        if transport_photons > 0 {
-            for object in &scene.objects {
-                let key = (position(&kinds, &object.yarn), position(&materials, &object.material), transport_photons);
-                if !transports.contains(&key) {
-                    transports.push(key);
-                }
-            }
-        }
-        let same_transports = buffers.transports.iter().map(|(key, _)| key).eq(&transports);
+        let mut wanted: Vec<UploadedTransport> = transports
+            .iter()
+            .map(|SceneTransport { yarn, material, table }| UploadedTransport {
+                table: Arc::clone(table),
+                yarn: position(&kinds, yarn),
+                material: position(&materials, material),
+                offset: 0,
+            })
+            .collect();
+        let same = |a: &UploadedTransport, b: &UploadedTransport| {
+            (a.yarn, a.material) == (b.yarn, b.material) && Arc::ptr_eq(&a.table, &b.table)
+        };
+        let same_transports =
+            buffers.transports.len() == wanted.len() && buffers.transports.iter().zip(&wanted).all(|(a, b)| same(a, b));
         if buffers.kinds != kinds || buffers.materials != materials || !same_transports {
             let mut tables = TableBuffer::default();
             kinds.iter().for_each(|yarn| tables.add_yarn(yarn, &cache.yarn(yarn)));
             materials.iter().for_each(|material| tables.add_material(material));
-            let mut add = |key: TransportKey| {
-                let (yarn, material) = (&kinds[key.0 as usize], &materials[key.1 as usize]);
-                (key, tables.add_transport(&cache.transport(yarn, material, key.2)))
-            };
-            buffers.transports = transports.into_iter().map(&mut add).collect();
+            wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
+            buffers.transports = wanted;
             buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = storage(gpu, "materials", &tables.materials)?;
             buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words)?;
@@ -335,7 +341,7 @@ impl SceneBuffers {
             let count = upload.knots.len() as u32;
             let radius_max = upload.knots.radius_max * scale;
             let (yarn, material) = (position(&self.kinds, &object.yarn), position(&self.materials, &object.material));
-            let transport = self.transports.iter().find(|(key, _)| (key.0, key.1) == (yarn, material));
+            let transport = self.transports.iter().find(|t| (t.yarn, t.material) == (yarn, material));
             draws.items.push(layout::Draw {
                 render_from_object_x: row(0),
                 render_from_object_y: row(1),
@@ -345,7 +351,7 @@ impl SceneBuffers {
                 knot_count: count,
                 yarn,
                 material,
-                transport: transport.map_or(0, |(_, offset)| *offset),
+                transport: transport.map_or(0, |transport| transport.offset),
                 seed: hash_combine(0x00b1_ec70, object.id),
                 radius_max: radius_max as f32,
                 handedness: determinant.signum() as f32,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
 use lisle_core::{Curves, Yarns};
-use lisle_gpu::{Error, Image, Light, Object, Scene, Settings};
+use lisle_gpu::{Error, Image, Light, Object, Progress, Scene, Settings};
 use support::{another_renderer, curves, draw, draw_with, exact, looking, measure, object, perspective, preset, scene};
 
 const SIZE: [u32; 2] = [96, 64];
@@ -64,7 +64,7 @@ fn a_picture_is_the_same_alone_again_and_after_others() {
     draw_with(&shared, &other, &other_settings);
     assert_same("after another scene", &alone, &draw_with(&shared, &scene, &settings));
     let stopped = shared.render(&scene, &Settings { samples: 8, ..settings.clone() }, &mut |p| {
-        if p.done == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if matches!(p, Progress::Samples { done: 2, .. }) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     assert!(matches!(stopped, Err(Error::Cancelled)));
     assert_same("after a cancelled picture", &alone, &draw_with(&shared, &scene, &settings));

@@ -1,4 +1,4 @@
-//! Tables that depend on a yarn's parameters alone: self-shadow, ambient occlusion, core fiber.
+//! Tables of a yarn: self-shadow, ambient occlusion, core fiber, which depend on its parameters alone, and with a material multiple scattering.
 //!
 //! **Section coordinates.** A point q of a yarn's cross-section, in units of the yarn's outer radius, in the frame that turns with
 //! the plies: ply j's centre lies at angle 2πj/K. The section repeats after 1/K of a turn.
@@ -18,4 +18,4 @@ pub use density::SectionDensity;
 pub use occlusion::Occlusion;
 pub use self_shadow::SelfShadow;
 pub use tables::Tables;
-pub use transport::{Transport, TransportSize};
+pub use transport::{Transport, TransportSize, TransportStore};

@@ -1,8 +1,9 @@
 //! The class `Renderer`.
 
 use std::cell::Cell;
+use std::path::PathBuf;
 
-use lisle_gpu::{Exposure, Image, Statistics};
+use lisle_gpu::{Exposure, Image, Progress, Statistics};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -17,6 +18,17 @@ thread_local! {
     static DRAWING: Cell<bool> = const { Cell::new(false) };
 }
 
+/// Share of a picture's progress that its tables have, if they are to be made.
+const TABLES_SHARE: f64 = 0.25;
+
+/// Where tables are kept: `$LISLE_CACHE`, nowhere if that is empty, or the user's folder for such files.
+fn cache_folder() -> Option<PathBuf> {
+    match std::env::var_os("LISLE_CACHE") {
+        Some(folder) => (!folder.is_empty()).then(|| folder.into()),
+        None => dirs::cache_dir().map(|folder| folder.join("lisle")),
+    }
+}
+
 /// An adapter that draws.
 #[pyclass(module = "lisle._native", frozen)]
 pub struct Renderer(lisle_gpu::Renderer);
@@ -25,7 +37,11 @@ pub struct Renderer(lisle_gpu::Renderer);
 impl Renderer {
     #[new]
     fn new(py: Python<'_>, adapter: Option<String>) -> Result<Self, Failure> {
-        detached(py, || lisle_gpu::Renderer::new(adapter.as_deref())).map(Self)
+        let renderer = detached(py, || lisle_gpu::Renderer::new(adapter.as_deref()))?;
+        Ok(Self(match cache_folder() {
+            Some(folder) => renderer.with_store(folder),
+            None => renderer,
+        }))
     }
 
     #[getter]
@@ -63,10 +79,18 @@ impl Renderer {
             return Err(Failure::Input("render was called from a progress callback of another render".to_owned()));
         }
         let mut listener = Listener::new(progress);
-        let result = detached(py, || {
-            self.0
-                .expose(&exposure, &settings, &mut |done| listener.report(f64::from(done.done) / f64::from(done.total)))
-        });
+        let mut tables = 0.0;
+        let mut report = |progress| {
+            let share = |done, total| f64::from(done) / f64::from(total);
+            listener.report(match progress {
+                Progress::Tables { done, total } => {
+                    tables = TABLES_SHARE * share(done, total);
+                    tables
+                }
+                Progress::Samples { done, total } => tables + (1.0 - tables) * share(done, total),
+            })
+        };
+        let result = detached(py, || self.0.expose(&exposure, &settings, &mut report));
         DRAWING.set(false);
         let image = listener.outcome(result)?;
         let statistics = statistics(py, &image.statistics)?;

@@ -58,9 +58,17 @@ fn try_draw_with(renderer: &Renderer, scene: &Scene, settings: &Settings) -> Res
     renderer.render(scene, settings, &mut |_| ControlFlow::Continue(()))
 }
 
-/// Point samples of every fiber: what a twin can follow.
+/// Point samples of every fiber, light scattered once: what a twin can follow.
 pub fn exact(size: [u32; 2]) -> Settings {
-    Settings { size, samples: 1, filter_width: 0.0, lod_pixels: 0.0, shadow_resolution: 64, ..Settings::default() }
+    Settings {
+        size,
+        samples: 1,
+        filter_width: 0.0,
+        lod_pixels: 0.0,
+        shadow_resolution: 64,
+        transport_photons: 0,
+        ..Settings::default()
+    }
 }
 
 /// Yarns of one Catmull-Rom curve.
@@ -80,14 +88,14 @@ pub fn without_flyaways(mut yarn: Yarn) -> Yarn {
     yarn
 }
 
-/// An object at the origin.
+/// An object at the origin, of fibers that show light from every angle.
 pub fn object(yarns: &Arc<Yarns>, yarn: &Yarn) -> Object {
     Object {
         name: "yarn".into(),
         id: 1,
         yarns: Arc::clone(yarns),
         yarn: Arc::new(yarn.clone()),
-        material: Arc::new(Material::preset("cotton-2").expect("preset")),
+        material: Arc::new(Material { diffuse_weight: 0.5, ..Material::preset("cotton-2").expect("preset") }),
         world_from_object: DMat4::IDENTITY,
         labels: Default::default(),
     }

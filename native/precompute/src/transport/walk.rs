@@ -1,6 +1,7 @@
 //! Photons of a sun on a yarn, followed until they leave it.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
 
 use glam::{DVec2, DVec3};
 use lisle_core::sampling::Random;
@@ -59,25 +60,43 @@ impl Tally {
     }
 }
 
-pub(super) fn walk(medium: &Medium, material: &Material, photons: u32) -> Tally {
+/// Photons of a batch, after which a walk may be stopped: some hundredths of a second.
+const BATCH: u32 = 20_000;
+
+/// Batches of a walk.
+pub(super) fn batches(photons: u32) -> u32 {
+    photons.div_ceil(BATCH)
+}
+
+/// Walks about `photons` photons; `proceed` is asked after each batch.
+pub(super) fn walk(
+    medium: &Medium,
+    material: &Material,
+    photons: u32,
+    proceed: &mut dyn FnMut() -> ControlFlow<()>,
+) -> ControlFlow<(), Tally> {
     let scattering = PhotonScattering::new(material);
-    let tallies: Vec<Tally> = (0..STREAMS)
-        .into_par_iter()
+    let longitudes = TransportSize::ALL.light_longitudes;
+    let batches = batches(photons);
+    let each = photons.div_ceil(batches * STREAMS * longitudes as u32);
+    let share = 1.0 / f64::from(each * STREAMS * batches);
+    let mut streams: Vec<_> = (0..STREAMS)
         .map(|stream| {
-            let mut tally = Tally::new();
-            let size = TransportSize::ALL;
-            let each = (photons / STREAMS / size.light_longitudes as u32).max(1);
-            for longitude in 0..size.light_longitudes {
-                let mut random = Random::new(0x7a15, longitude as u64, stream);
-                for _ in 0..each {
-                    let share = 1.0 / f64::from(each * STREAMS);
-                    follow(medium, &scattering, longitude, share, &mut random, &mut tally);
-                }
-            }
-            tally
+            let randoms: Vec<_> = (0..longitudes).map(|k| Random::new(0x7a15, k as u64, stream)).collect();
+            (Tally::new(), randoms)
         })
         .collect();
-    tallies.iter().fold(Tally::new(), Tally::add)
+    for _ in 0..batches {
+        streams.par_iter_mut().for_each(|(tally, randoms)| {
+            for (longitude, random) in randoms.iter_mut().enumerate() {
+                for _ in 0..each {
+                    follow(medium, &scattering, longitude, share, random, tally);
+                }
+            }
+        });
+        proceed()?;
+    }
+    ControlFlow::Continue(streams.iter().fold(Tally::new(), |sum, (tally, _)| sum.add(tally)))
 }
 
 fn follow(
