@@ -36,7 +36,6 @@ def wool(red, green, blue):
         beta_r_deg=6,
         beta_tt_deg=20,
         diffuse=tuple(color),
-        diffuse_weight=0.6,
     )
 
 

@@ -22,8 +22,8 @@ _FIRST_STRIP_PIXELS = 80_000
 _LEAST_STRIP_PIXELS = 40_000
 _MOST_SAMPLES_A_CALL = 8
 
-_SHADOW_TEXELS = (256, 512, 1024)
-"""Along one side of a shadow map: of the draft, of the first sample, of the others."""
+DRAFT, FIRST_SAMPLE, OTHER_SAMPLES = range(3)
+"""Qualities that are asked for: each may take more time than the one before."""
 
 
 class Stopped(Exception):
@@ -42,8 +42,8 @@ class Task:
     """Part to draw: (x0, y0, x1, y1) from the bottom left, end exclusive; not empty."""
     samples: int
     draw: Callable
-    """`draw(size, region, samples, first_sample, shadow_texels, go_on)` → (combined (h, w, 4), depth (h, w)), float32,
-    top row first. `go_on()` is asked now and then; draws nothing and raises Stopped once it says False."""
+    """`draw(size, region, samples, first_sample, quality, go_on)` → (combined (h, w, 4), depth (h, w)), float32,
+    top row first. `quality` is one of `DRAFT`, `FIRST_SAMPLE`, `OTHER_SAMPLES`. `go_on()` is asked now and then; draws nothing and raises Stopped once it says False."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,7 +212,7 @@ class Painter:
             while low < height:
                 rows = min(max(int(view.strip_pixels / width), 1), height - low)
                 region = (task.region[0], task.region[1] + low, task.region[2], task.region[1] + low + rows)
-                drawn = draw(task.size, region, count, done, _SHADOW_TEXELS[2 if done else 1])
+                drawn = draw(task.size, region, count, done, OTHER_SAMPLES if done else FIRST_SAMPLE)
                 if drawn is not None:
                     strip, strip_depth, seconds = drawn
                     fresh[low : low + rows] = strip[::-1]
@@ -239,7 +239,7 @@ class Painter:
         x1, y1 = np.ceil(task.region[2:] * scale[2:]).astype(int)
         region = (int(x0), int(y0), int(min(max(x1, x0 + 1), size[0])), int(min(max(y1, y0 + 1), size[1])))
         while True:
-            drawn = draw(size, region, 1, 0, _SHADOW_TEXELS[0])
+            drawn = draw(size, region, 1, 0, DRAFT)
             if drawn is not None:
                 break
             yield
@@ -254,10 +254,10 @@ class Painter:
     def _timed(self, view, task):
         """`task.draw` with the seconds it took, or None if something else was to be drawn first."""
 
-        def draw(size, region, samples, first_sample, shadow_texels):
+        def draw(size, region, samples, first_sample, quality):
             start = time.perf_counter()
             try:
-                drawn = task.draw(size, region, samples, first_sample, shadow_texels, lambda: self._wanted(view, task))
+                drawn = task.draw(size, region, samples, first_sample, quality, lambda: self._wanted(view, task))
             except Stopped:
                 return None
             return *drawn, max(time.perf_counter() - start, 1e-6)

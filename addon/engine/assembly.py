@@ -4,10 +4,10 @@
 import numpy as np
 
 
-def add_objects(lisle, scene, content, at_rest, rest_shapes, material_of=None):
+def add_objects(lisle, scene, content, at_rest, rest_shapes):
     """Adds the yarns of `content` (export.scene.Content), measured on `at_rest`, to a lisle.Scene.
 
-    `material_of(lisle.Material)` takes the place of each material. Returns Blender's object index by object id.
+    Returns Blender's object index by object id.
     """
     parts = {key: _parts(lisle, geometry, at_rest[key], rest_shapes) for key, geometry in content.geometries.items()}
     pass_index_of = {}
@@ -20,7 +20,7 @@ def add_objects(lisle, scene, content, at_rest, rest_shapes, material_of=None):
             scene.add(
                 yarns,
                 yarn=yarn,
-                material=material if material_of is None else material_of(material),
+                material=material,
                 transform=placement.world_from_object,
                 object_id=identity,
                 name=placement.name,

@@ -51,6 +51,8 @@ def _draw(lisle, engine, depsgraph, size, note):
     if settings.method == "REFERENCE":
         image = reference.draw(lisle, scene, settings, **options)
     else:
+        if not settings.multiple_scattering:
+            options["transport_photons"] = 0
         image = renderer(lisle).render(
             scene,
             samples=settings.samples,
@@ -92,6 +94,4 @@ def _native_scene(lisle, engine, depsgraph, frame_size, note):
         lights=content.lights,
         ambient=ambient_radiance(depsgraph.scene.world, note),
     )
-    settings = depsgraph.scene.lisle
-    material_of = reference.material_of(settings) if settings.method == "REFERENCE" else None
-    return scene, add_objects(lisle, scene, content, at_rest, REST_SHAPES, material_of)
+    return scene, add_objects(lisle, scene, content, at_rest, REST_SHAPES)

@@ -13,6 +13,11 @@ from .rest import RestShapes
 REST_SHAPES = RestShapes()
 """Rest shapes of what views have shown; forgotten with the file."""
 
+_SHADOW_TEXELS = (256, 512, 1024)
+_PHOTONS = (20_000, 20_000, 500_000)
+"""By the painter's quality: along one side of a shadow map, and of the tables of multiple scattering, whose final ones take
+seconds for a material that was never seen before."""
+
 _numbers = itertools.count()
 
 
@@ -33,6 +38,7 @@ class Snapshot:
         self.number = next(_numbers)
         """Differs from that of any other snapshot."""
         self.samples = settings.viewport_samples
+        self._multiple_scattering = settings.multiple_scattering
         self._settings = {
             "shading": settings.shading,
             "occlusion": settings.occlusion,
@@ -44,6 +50,7 @@ class Snapshot:
         """Whether pictures of both are equal."""
         return (
             self._settings == other._settings
+            and self._multiple_scattering == other._multiple_scattering
             and self.samples == other.samples
             and self._ambient == other._ambient
             and self.content.equals(other.content)
@@ -63,7 +70,7 @@ class Snapshot:
         if transparent is not None:
             settings["transparent"] = transparent
 
-        def draw(size, region, samples, first_sample, shadow_texels, go_on):
+        def draw(size, region, samples, first_sample, quality, go_on):
             lisle = self._lisle
             try:
                 image = renderer(lisle).render(
@@ -72,7 +79,8 @@ class Snapshot:
                     region=region,
                     samples=samples,
                     first_sample=first_sample,
-                    shadow_resolution=shadow_texels,
+                    shadow_resolution=_SHADOW_TEXELS[quality],
+                    transport_photons=_PHOTONS[quality] if self._multiple_scattering else 0,
                     progress=lambda _: go_on(),
                     **settings,
                 )

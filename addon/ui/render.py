@@ -47,6 +47,9 @@ class LISLE_RENDER_PT_shading(LislePanel, bpy.types.Panel):
         layout.prop(settings, "shading")
         column = layout.column()
         column.active = settings.method != "REFERENCE"
+        row = column.row()
+        row.active = settings.shading == "physical"
+        row.prop(settings, "multiple_scattering")
         column.prop(settings, "occlusion")
         column.prop(settings, "lod")
 

@@ -87,7 +87,7 @@ const MOST_YARNS_ABOVE: f32 = 3.0;
 struct Passing {
     // Share that comes straight, beside them and between their fibers.
     straight: f32,
-    // Share that they scatter on, over the half space of the light: each yarn some [Zinke2008, in spirit].
+    // Share that they scatter on, over the half space of the light: each yarn some, as hairs do in [Zinke2008].
     spread: vec3f,
 }
 

@@ -19,7 +19,7 @@ class Scene:
         self.gate = threading.Event()
         self.gate.set()
 
-    def draw(self, size, region, samples, first_sample, shadow_texels, go_on):
+    def draw(self, size, region, samples, first_sample, quality, go_on):
         self.calls.append((size, region, samples, first_sample))
         end = time.monotonic() + self.seconds
         while not self.gate.is_set() or time.monotonic() < end:

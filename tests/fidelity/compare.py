@@ -111,17 +111,17 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
     material = lisle.Material.preset(models.MATERIALS[case.material])
     yarn = lisle.Yarn.preset(case.yarn)
 
-    def scene(material: lisle.Material = material) -> lisle.Scene:
+    def scene() -> lisle.Scene:
         return models.scene(yarns, yarn, material, case.view, case.light)
 
     def draw(**options: Any) -> lisle.Image:
-        return renderer.render(scene(), samples=max(samples // 2, 1), **options)
+        return renderer.render(scene(), samples=max(samples // 2, 1), **{"transport_photons": 0, **options})
 
     rendered = [draw(seed=seed) for seed in (0, 1)]
+    all_orders = [draw(seed=seed, transport_photons=500_000) for seed in (0, 1)]
     full = colour(draw(lod_pixels=0))
     single = lisle.Reference().render(scene(), bounces=1, samples=samples)
-    # Its diffuse term stands for what this one scatters itself.
-    multiple = lisle.Reference().render(scene(material.replace(diffuse_weight=0.0)), samples=samples, seed=1)
+    multiple = lisle.Reference().render(scene(), samples=samples, seed=1)
     alpha = 0.5 * sum(float(image["alpha"].mean(dtype=np.float64)) for image in rendered)
     expected = colour(single)
 
@@ -132,7 +132,7 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
     return Result(
         case,
         pair(rendered, single),
-        pair(rendered, multiple),
+        pair(all_orders, multiple),
         alpha / float(single["alpha"].mean(dtype=np.float64)) - 1,
         measures.mean_error(colour(rendered[0]), full),
         measures.mean_error(full, expected),
@@ -165,7 +165,7 @@ def hot_spot(renderer: lisle.Renderer, samples: int) -> list[tuple[int, float, f
         for each, factor in ((yarn, 1), (one, 4)):
             scene = models.scene(yarns, each, material, "near", models.sun((0.0, -np.sin(a), -np.cos(a))))
             reference = lisle.Reference().render(scene, bounces=1, samples=factor * samples)
-            rendered = renderer.render(scene, samples=samples, lod_pixels=0)
+            rendered = renderer.render(scene, samples=samples, lod_pixels=0, transport_photons=0)
             expected = colour(reference)
             found.append(measures.mean_error(colour(rendered), expected))
             found.append(measures.mean_noise(reference["variance"], expected))

@@ -1,4 +1,4 @@
-//! Models in close, worst and full view, with both shadings [WuYuksel2018 Table 1].
+//! Models in close, worst and full view, with each shading [WuYuksel2018 Table 1].
 
 use std::sync::Arc;
 
@@ -15,6 +15,10 @@ use crate::views::Views;
 /// Distances tried for the worst view, from close to full.
 const STEPS: u32 = 12;
 const QUICK_STEPS: u32 = 4;
+
+/// Shading models, photons of multiple scattering, and what the table calls them.
+const SHADINGS: [(Shading, u32, &str); 3] =
+    [(Shading::Simple, 0, "simple"), (Shading::Physical, 0, "physical"), (Shading::Physical, 500_000, "multiple")];
 
 /// A line of the table.
 pub struct Row {
@@ -37,8 +41,8 @@ pub fn measure_views(
     let worst = worst(renderer, yarns, &views, steps)?;
     let mut rows = Vec::new();
     for (view, camera) in [("close", views.close()), ("worst", worst), ("full", views.full())] {
-        for (shading, name) in [(Shading::Simple, "simple"), (Shading::Physical, "physical")] {
-            let settings = scene::settings(shading, options.samples);
+        for (shading, photons, name) in SHADINGS {
+            let settings = Settings { transport_photons: photons, ..scene::settings(shading, options.samples) };
             let figures = measure::picture(renderer, &scene::lit(yarns, camera), &settings)?;
             eprintln!("  {view}, {name}: {} s per sample", seconds(figures.wall_s));
             findings.push(Finding {

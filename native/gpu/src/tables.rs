@@ -215,6 +215,9 @@ pub(crate) struct SceneTransport {
 /// What a table of multiple scattering is made from, and with how many photons.
 type TransportKey = (Yarn, Material, u32);
 
+/// Tables of fewer photons are drafts, made sooner than a folder would have room for one of every material that a user tries.
+const LEAST_KEPT_PHOTONS: u32 = 50_000;
+
 /// Precomputed tables of recent yarns and materials, so that a change of camera costs none of them.
 #[derive(Default)]
 pub(crate) struct TableCache {
@@ -264,7 +267,7 @@ impl TableCache {
                         done += 1;
                         step(done, total)
                     })?;
-                    if let Some(store) = &self.store {
+                    if let Some(store) = self.store.as_ref().filter(|_| photons >= LEAST_KEPT_PHOTONS) {
                         // A folder that cannot be written costs the next session time, this one nothing.
                         let _ = store.save(yarn, material, photons, &made);
                     }

@@ -109,8 +109,7 @@ class Environment:
 class Reference:
     """A path tracer through explicit fibers: slow, and right.
 
-    It draws the same scenes as `Renderer` from the same arguments. `Material.diffuse` stands in for light that is
-    scattered many times, which the renderer lacks: where the reference scatters it itself, set `diffuse_weight=0`.
+    It draws the same scenes as `Renderer` from the same arguments.
 
     It runs on all cores and needs no graphics adapter. Memory: 20 to 40 bytes for each segment of a fiber, and up to
     five times as much while it starts. A knitted glove, 140 000 yarn radii of yarn with 225 fibers, has 100 million.

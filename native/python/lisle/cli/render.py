@@ -13,7 +13,7 @@ from ..loading import load
 from ..material import Material
 from ..renderer import Renderer
 from ..yarn import Yarn
-from .options import AMBIENT, SUN, add_input, add_picture, check_output, frame_range, open_animation
+from .options import AMBIENT, SUN, add_input, add_picture, check_output, frame_range, open_animation, whole
 from .progress import Bar
 
 
@@ -24,6 +24,13 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
     )
     add_input(parser, ".png or .exr; #### stands for the frame")
     add_picture(parser, samples=16)
+    parser.add_argument(
+        "--transport-photons",
+        type=whole,
+        default=500_000,
+        metavar="N",
+        help="precision of light that is scattered more than once, 0 for none (default 500000)",
+    )
     parser.add_argument("--adapter", metavar="NAME", help="a part of an adapter's name, see `lisle devices`")
     frames = parser.add_mutually_exclusive_group()
     frames.add_argument("--frame", type=float, metavar="F", help="time code of an animated USD file (default: first)")
@@ -54,6 +61,7 @@ def run(arguments: argparse.Namespace) -> None:
                 ambient=AMBIENT,
                 samples=arguments.samples,
                 shading=arguments.shading,
+                transport_photons=arguments.transport_photons,
                 progress=bar.update,
             )
             image.save(path)
