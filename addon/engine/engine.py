@@ -32,8 +32,12 @@ class LisleRenderEngine(bpy.types.RenderEngine):
     """Of the region that this instance draws; none in a final render."""
 
     def __del__(self):
-        if self._viewport is not None:
-            self._viewport.close()
+        try:
+            viewport = self._viewport
+        except ReferenceError:  # Blender removed the engine of a final picture first
+            return
+        if viewport is not None:
+            viewport.close()
 
     def update_render_passes(self, scene, view_layer):
         register_passes(self, scene, view_layer)

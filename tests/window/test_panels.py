@@ -12,13 +12,16 @@ answer = [
 bpy.data.materials.remove(material)
 """
 
-PROPERTIES = """
-area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == 'PROPERTIES')
+SELECT = """
 yarn = bpy.data.objects['Yarn']
 if not yarn.data.materials:
     yarn.data.materials.append(bpy.data.materials.new('Wool'))
 bpy.context.view_layer.objects.active = yarn
 yarn.select_set(True)
+"""
+
+PROPERTIES = """
+area = next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == 'PROPERTIES')
 area.spaces.active.context = 'MATERIAL'
 area.tag_redraw()
 """
@@ -30,6 +33,7 @@ def test_every_preset_has_an_icon_of_its_own(any_window):
 
 
 def test_the_material_panel_draws(view):
+    view.do(SELECT)
     view.do(PROPERTIES)
     view.do("bpy.ops.wm.redraw_timer(type='DRAW_WIN_SWAP', iterations=3)")
     log = view.log.read_text()
