@@ -164,7 +164,11 @@ class LisleFiber(bpy.types.PropertyGroup):
     gamma_tt_deg: _degrees("Transmission Spread", "Spread of transmitted light around the fiber")
     diffuse: _color("Diffuse", "Colour of the diffuse part")
     diffuse_weight: FloatProperty(
-        name="Diffuse Weight", description="Share of the diffuse part in physical shading, 0 for bare fibers", min=0, max=1, update=_tag
+        name="Diffuse Weight",
+        description="Share of the diffuse part in physical shading, 0 for bare fibers",
+        min=0,
+        max=1,
+        update=_tag,
     )
     specular: _color("Specular", "Colour of the highlight in simple shading")
     specular_beta_deg: _degrees("Specular Width", "Width of the highlight in simple shading")
@@ -243,8 +247,8 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
     )
     multiple_scattering: BoolProperty(
         name="Multiple Scattering",
-        description="Light that fibers send each other, which gives light yarn most of its colour. Computed once for each "
-        "yarn and material, for some seconds, and kept on disk",
+        description="Light that fibers send each other, which gives light yarn most of its colour. Computed once for "
+        "each yarn and material, for some seconds, and kept on disk",
         default=True,
         update=_tag,
     )

@@ -36,27 +36,31 @@ PASSES = ("combined", "depth", "alpha", "normal", "tangent", "object_id", "varia
 CRYPTOMATTES = {"crypto_object": "CryptoObject", "crypto_material": "CryptoMaterial"}
 """Cryptomatte passes, and what files call them."""
 
-CHANNELS = {
-    "combined": ("R", "G", "B", "A"),
-    "depth": ("Z",),
-    "normal": ("normal.X", "normal.Y", "normal.Z"),
-    "tangent": ("tangent.X", "tangent.Y", "tangent.Z"),
-    "object_id": ("object_id",),
-    "variance": ("variance.R", "variance.G", "variance.B"),
-    "position": ("position.X", "position.Y", "position.Z"),
-    "uv": ("uv.U", "uv.V"),
-    "vector": ("vector.X", "vector.Y", "vector.Z", "vector.W"),
-    "object_index": ("object_index",),
-    "material_index": ("material_index",),
-    "shadow": ("shadow",),
-    "denoising_normal": ("denoising_normal.X", "denoising_normal.Y", "denoising_normal.Z"),
-} | {
-    name: tuple(f"{name}.{channel}" for channel in "RGB")
-    for name in ("diffuse", "specular", "transmission", "scattered", "ambient", "albedo")
-} | {
-    name: tuple(f"{layer}{rank:02}.{channel}" for rank in range(3) for channel in "RGBA")
-    for name, layer in CRYPTOMATTES.items()
-}
+CHANNELS = (
+    {
+        "combined": ("R", "G", "B", "A"),
+        "depth": ("Z",),
+        "normal": ("normal.X", "normal.Y", "normal.Z"),
+        "tangent": ("tangent.X", "tangent.Y", "tangent.Z"),
+        "object_id": ("object_id",),
+        "variance": ("variance.R", "variance.G", "variance.B"),
+        "position": ("position.X", "position.Y", "position.Z"),
+        "uv": ("uv.U", "uv.V"),
+        "vector": ("vector.X", "vector.Y", "vector.Z", "vector.W"),
+        "object_index": ("object_index",),
+        "material_index": ("material_index",),
+        "shadow": ("shadow",),
+        "denoising_normal": ("denoising_normal.X", "denoising_normal.Y", "denoising_normal.Z"),
+    }
+    | {
+        name: tuple(f"{name}.{channel}" for channel in "RGB")
+        for name in ("diffuse", "specular", "transmission", "scattered", "ambient", "albedo")
+    }
+    | {
+        name: tuple(f"{layer}{rank:02}.{channel}" for rank in range(3) for channel in "RGBA")
+        for name, layer in CRYPTOMATTES.items()
+    }
+)
 """Of an EXR, by pass."""
 
 
