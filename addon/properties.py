@@ -247,8 +247,8 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
     )
     multiple_scattering: BoolProperty(
         name="Multiple Scattering",
-        description="Light that fibers send each other, which gives light yarn most of its colour. Computed once for "
-        "each yarn and material, for some seconds, and kept on disk",
+        description="Light that fibers send each other, which gives light yarn most of its colour. Computed once for each "
+        "yarn and material, for some seconds, and kept on disk",
         default=True,
         update=_tag,
     )
@@ -269,6 +269,15 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
         default=1,
         subtype="PIXEL",
         update=_tag,
+    )
+    motion_steps: IntProperty(
+        name="Steps",
+        description="Times at which the scene is evaluated while the shutter is open, besides its opening. "
+        "Between them everything moves evenly",
+        min=1,
+        soft_max=8,
+        max=64,
+        default=2,
     )
     seed: IntProperty(name="Seed", description="Seed of the sample pattern", min=0, update=_tag)
     use_reference_frame: BoolProperty(
@@ -317,6 +326,21 @@ class LisleViewLayerSettings(bpy.types.PropertyGroup):
 
     use_pass_tangent: BoolProperty(name="Fiber Tangent", description="Direction of the fibers, world space")
     use_pass_alpha: BoolProperty(name="Alpha", description="Coverage of the yarn, also where the film is opaque")
+    use_pass_diffuse: BoolProperty(
+        name="Diffuse",
+        description="Light of lamps by the diffuse part. This pass and the next four add up to the colour of the yarn",
+    )
+    use_pass_specular: BoolProperty(name="Specular", description="Light of lamps that fibers reflect")
+    use_pass_transmission: BoolProperty(name="Transmission", description="Light of lamps that shines through fibers")
+    use_pass_scattered: BoolProperty(name="Scattered", description="Light of lamps that is scattered more than once")
+    use_pass_ambient: BoolProperty(name="Ambient", description="Light of the surroundings, without the background")
+    use_pass_shadow: BoolProperty(
+        name="Shadow", description="Share of the lamps' light that shadows leave, from 0 in the dark to 1"
+    )
+    use_pass_denoising: BoolProperty(
+        name="Denoising Data",
+        description="Denoising Albedo and Denoising Normal, for the compositor's Denoise node",
+    )
 
 
 _GROUPS = (

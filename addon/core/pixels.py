@@ -21,6 +21,15 @@ def pass_rect(image, channels, size):
     return array[::-1].ravel()
 
 
+def cut_channels(image, first, count):
+    """Channels `first` to `first + count` of a picture; 0 beyond its own. A picture of one channel stays as it is."""
+    if image.ndim == 2:
+        return image
+    found = image[..., first : first + count]
+    missing = count - found.shape[2]
+    return np.pad(found, ((0, 0), (0, 0), (0, missing))) if missing else found
+
+
 def stable_id(*identity):
     """A number from 1 to 2²⁴ − 1 that is the same for the same identity in every process.
 

@@ -16,7 +16,7 @@ def add_objects(lisle, scene, content, at_rest, rest_shapes):
         while identity in pass_index_of:  # two of equal hash; their order is stable
             identity += 1
         pass_index_of[identity] = placement.pass_index
-        for yarns, (yarn, material) in parts[placement.key]:
+        for yarns, (yarn, material), (material_name, material_index) in parts[placement.key]:
             scene.add(
                 yarns,
                 yarn=yarn,
@@ -24,21 +24,25 @@ def add_objects(lisle, scene, content, at_rest, rest_shapes):
                 transform=placement.world_from_object,
                 object_id=identity,
                 name=placement.name,
+                object_index=placement.pass_index,
+                material_name=material_name,
+                material_index=material_index,
             )
     return pass_index_of
 
 
 def _parts(lisle, geometry, at_rest, rest_shapes):
-    """[(lisle.Yarns, (lisle.Yarn, lisle.Material))]: the curves of one geometry, by material."""
-    curves, materials = geometry.curves, geometry.materials
+    """[(lisle.Yarns, (lisle.Yarn, lisle.Material), label)]: the curves of one geometry, by material."""
+    curves, materials, labels = geometry.curves, geometry.materials, geometry.labels
     if curves.material_index is None or len(materials) == 1:
-        return [(rest_shapes.yarns(lisle, geometry.key, curves, at_rest), materials[0])]
+        return [(rest_shapes.yarns(lisle, geometry.key, curves, at_rest), materials[0], labels[0])]
     # Blender draws an index beyond the last slot with the last one.
     slots = np.clip(curves.material_index, 0, len(materials) - 1)
     return [
         (
             rest_shapes.yarns(lisle, (*geometry.key, f"material {slot}"), part, part if curves is at_rest else rest),
             materials[slot],
+            labels[slot],
         )
         for slot in np.unique(slots)
         for part, rest in [(curves.select(slots == slot), at_rest.select(slots == slot))]

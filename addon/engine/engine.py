@@ -48,8 +48,10 @@ class LisleRenderEngine(bpy.types.RenderEngine):
         try:
             # Blender cuts the rectangle to the border, exactly as it will use it.
             result = self.begin_result(0, 0, self.resolution_x, self.resolution_y, layer=depsgraph.view_layer.name)
-            pictures = draw(self, depsgraph, (result.resolution_x, result.resolution_y), notes.append)
+            pictures, metadata = draw(self, depsgraph, (result.resolution_x, result.resolution_y), notes.append)
             write_passes(result, pictures)
+            for name, text in metadata.items():  # to the whole picture: what belongs to one layer's is lost
+                self.get_result().stamp_data_add_field(name, text)
         except BaseException as caught:
             error = caught
         if result is not None:

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One view layer at one frame, from Blender's scene to the native image."""
 
+from dataclasses import dataclass
+
+import numpy as np
+
 from .. import native
 from ..core.camera import border_pixels
 from ..core.errors import Cancelled, LisleError, SceneError
@@ -11,11 +15,14 @@ from ..export.world import ambient_radiance
 from . import reference
 from .assembly import add_objects
 from .job import REST_SHAPES
+from .motion import at_times, shutter_times
+from .passes import wanted_passes
 from .renderer import drop, renderer
 
 
 def draw(engine, depsgraph, size, note):
-    """The pictures of a view layer by `Pass.image`, of `size` = (w, h) pixels: the border's size if there is one.
+    """The pictures of a view layer by `Pass.image`, of `size` = (w, h) pixels: the border's size if there is one. And
+    metadata of its Cryptomattes, text by name.
 
     Raises LisleError with a message for the user; Cancelled if the user stopped it.
     """
@@ -34,7 +41,8 @@ def draw(engine, depsgraph, size, note):
 def _draw(lisle, engine, depsgraph, size, note):
     frame_size = engine.resolution_x, engine.resolution_y
     region = _region(depsgraph.scene.render, frame_size, size)
-    scene, pass_index_of = _native_scene(lisle, engine, depsgraph, frame_size, note)
+    wanted = wanted_passes(depsgraph.view_layer)
+    shot = _native_shot(lisle, engine, depsgraph, frame_size, note, "vector" in wanted)
     settings, render = depsgraph.scene.lisle, depsgraph.scene.render
 
     def progress(fraction):
@@ -49,12 +57,19 @@ def _draw(lisle, engine, depsgraph, size, note):
         "progress": progress,
     }
     if settings.method == "REFERENCE":
-        image = reference.draw(lisle, scene, settings, **options)
+        if any(name in wanted for name in lisle.FURTHER_PASSES):
+            note("the path tracer leaves passes black that only the renderer draws")
+        if shot.steps:
+            note("the path tracer draws no motion blur")
+        image = reference.draw(lisle, shot.scene, settings, **options)
     else:
         if not settings.multiple_scattering:
             options["transport_photons"] = 0
+        if shot.neighbours:
+            options["before"], options["after"] = shot.neighbours
         image = renderer(lisle).render(
-            scene,
+            shot.steps or shot.scene,
+            passes=[n for n in lisle.FURTHER_PASSES if n in wanted and (n != "vector" or shot.neighbours)],
             samples=settings.samples,
             shading=settings.shading,
             occlusion=settings.occlusion,
@@ -62,10 +77,11 @@ def _draw(lisle, engine, depsgraph, size, note):
             seed=settings.seed,
             **options,
         )
-    pictures = {name: image[name] for name in image}
-    if depsgraph.view_layer.use_pass_object_index:
-        pictures["pass_index"] = look_up(image["object_id"], pass_index_of)
-    return pictures
+    black = np.zeros((size[1], size[0], 1), np.float32)
+    pictures = dict.fromkeys(lisle.FURTHER_PASSES, black) | {name: image[name] for name in image}
+    if "pass_index" in wanted:
+        pictures["pass_index"] = look_up(image["object_id"], shot.pass_index_of)
+    return pictures, image.cryptomatte_metadata(f"{depsgraph.view_layer.name}.")
 
 
 def _region(render, frame_size, size):
@@ -79,8 +95,21 @@ def _region(render, frame_size, size):
     return x0, y0, x1, y1
 
 
-def _native_scene(lisle, engine, depsgraph, frame_size, note):
-    """The lisle.Scene, and Blender's object index by object id."""
+@dataclass
+class _Shot:
+    """What a picture is drawn from."""
+
+    scene: object
+    """lisle.Scene at the present frame."""
+    steps: list
+    """The same at even steps over the time that the shutter is open; empty without motion blur."""
+    neighbours: list
+    """The same one frame before and one after, for the vector pass; empty without it."""
+    pass_index_of: dict
+    """Blender's object index by object id."""
+
+
+def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
     if depsgraph.scene.render.use_multiview:
         raise SceneError("Stereoscopy is not supported: turn it off in the output properties")
     engine.update_stats("", "Reading curves")
@@ -89,9 +118,17 @@ def _native_scene(lisle, engine, depsgraph, frame_size, note):
         note("the view layer shows no curves")
     at_rest = REST_SHAPES.find(lisle, engine, depsgraph, content)
     camera = engine.camera_override or depsgraph.scene.camera
-    scene = lisle.Scene(
-        camera=native_camera(lisle, camera, depsgraph, frame_size),
-        lights=content.lights,
-        ambient=ambient_radiance(depsgraph.scene.world, note),
-    )
-    return scene, add_objects(lisle, scene, content, at_rest, REST_SHAPES)
+    ambient = ambient_radiance(depsgraph.scene.world, note)
+
+    def scene_of(moved, seen_from):
+        scene = lisle.Scene(camera=seen_from, lights=content.lights, ambient=ambient)
+        return scene, add_objects(lisle, scene, moved, at_rest, REST_SHAPES)
+
+    scene, pass_index_of = scene_of(content, native_camera(lisle, camera, depsgraph, frame_size))
+    shutter, now = shutter_times(depsgraph.scene), depsgraph.scene.frame_current_final
+    if shutter and with_neighbours:
+        note("the pass Vector is black, because there is motion blur")
+    around = [now - 1, now + 1] if with_neighbours and not shutter else []
+    moved = at_times(lisle, engine, depsgraph, content, shutter or around, camera.original, frame_size)
+    others = [scene_of(*moment)[0] for moment in moved]
+    return _Shot(scene, others if shutter else [], others if around else [], pass_index_of)

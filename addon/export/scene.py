@@ -29,6 +29,8 @@ class Geometry:
     curves: CurveArrays
     materials: list
     """(lisle.Yarn, lisle.Material) by material index; never empty."""
+    labels: list
+    """(name, Blender's index) of the materials, likewise."""
     reference_frame: int
     remeasure: bool
 
@@ -159,9 +161,9 @@ def _read_parts(lisle, obj, geometry, depsgraph):
         if settings.yarn_radius > 0 and obj.type != "CURVE":
             arrays = _with_radius(arrays, settings.yarn_radius)
         native = [yarn_and_material(lisle, material) for material in materials or [None]]
-        parts.append(
-            (Geometry((name, *path), obj.name, arrays, native, reference_frame, settings.remeasure), transforms)
-        )
+        labels = [(material.name, material.pass_index) if material else ("", 0) for material in materials or [None]]
+        geometry = Geometry((name, *path), obj.name, arrays, native, labels, reference_frame, settings.remeasure)
+        parts.append((geometry, transforms))
 
     own = np.eye(4)[np.newaxis]
     if obj.type == "CURVE":

@@ -69,6 +69,22 @@ class LISLE_RENDER_PT_reference(LislePanel, bpy.types.Panel):
             layout.label(text=f"Yarn is measured at the first frame, {context.scene.frame_start}")
 
 
+class LISLE_RENDER_PT_motion_blur(LislePanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "render"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context):
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context):
+        layout, render = self.split_layout(), context.scene.render
+        layout.active = render.use_motion_blur and context.scene.lisle.method != "REFERENCE"
+        layout.prop(render, "motion_blur_position", text="Position")
+        layout.prop(render, "motion_blur_shutter", text="Shutter")
+        layout.prop(context.scene.lisle, "motion_steps")
+
+
 class LISLE_RENDER_PT_film(LislePanel, bpy.types.Panel):
     bl_label = "Film"
     bl_context = "render"
@@ -82,5 +98,6 @@ PANELS = (
     LISLE_RENDER_PT_sampling,
     LISLE_RENDER_PT_shading,
     LISLE_RENDER_PT_reference,
+    LISLE_RENDER_PT_motion_blur,
     LISLE_RENDER_PT_film,
 )

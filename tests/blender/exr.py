@@ -12,6 +12,22 @@ def read_exr(path):
     """{channel name: (h, w) array, top row first}."""
     with open(path, "rb") as file:
         data = file.read()
+    headers, at, multipart = _headers(path, data)
+    pictures = {}
+    for header in headers:
+        assert header["compression"] == b"\0", f"{path} is compressed"
+        at = _read_part(data, at, header, multipart, pictures)
+    return pictures
+
+
+def read_attributes(path):
+    """{attribute name: bytes} of the first part."""
+    with open(path, "rb") as file:
+        data = file.read()
+    return _headers(path, data)[0][0]
+
+
+def _headers(path, data):
     magic, version = struct.unpack_from("<ii", data)
     assert magic == 20000630 and not version & _TILED_OR_DEEP, f"{path}: not a scan-line EXR"
     multipart = bool(version & _MULTIPART)
@@ -19,12 +35,7 @@ def read_exr(path):
     while not headers or (multipart and data[at]):
         header, at = _header(data, at)
         headers.append(header)
-    at += multipart
-    pictures = {}
-    for header in headers:
-        assert header["compression"] == b"\0", f"{path} is compressed"
-        at = _read_part(data, at, header, multipart, pictures)
-    return pictures
+    return headers, at + multipart, multipart
 
 
 def _read_part(data, at, header, multipart, pictures):

@@ -34,7 +34,8 @@ def break_pass_size(addon, lisle):
     render = lisle.Renderer.render
 
     def too_small(self, *args, **options):
-        return {name: picture[:-1] for name, picture in render(self, *args, **options).items()}
+        image = render(self, *args, **options)
+        return type(image)((name, picture[:-1]) for name, picture in image.items())
 
     lisle.Renderer.render = too_small
     return "picture of shape"

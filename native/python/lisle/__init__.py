@@ -13,7 +13,7 @@ from ._native import Adapter, Yarns, __version__, adapters
 from .camera import Camera
 from .errors import Cancelled, DeviceError, Error, InputError
 from .fabric import MeshKnit, knit_on_mesh, knit_sleeve, knit_swatch, knit_tube, sweater, woven_swatch
-from .image import Image
+from .image import FURTHER_PASSES, Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
 from .material import Material
@@ -23,6 +23,7 @@ from .scene import Object, Scene
 from .yarn import Yarn
 
 __all__ = [
+    "FURTHER_PASSES",
     "Adapter",
     "Area",
     "Camera",

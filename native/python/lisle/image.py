@@ -135,6 +135,14 @@ class Image(Mapping[str, npt.NDArray[Any]]):
         height, width = self._passes["combined"].shape[:2]
         return width, height
 
+    def cryptomatte_metadata(self, layer_prefix: str = "") -> dict[str, str]:
+        """What a file says of its Cryptomatte passes, as the specification wants it: text by attribute.
+
+        Args:
+            layer_prefix: what names of channels begin with before "CryptoObject" and "CryptoMaterial".
+        """
+        return cryptomatte_metadata(self.manifests, layer_prefix)
+
     def save(self, path: str | Path, bits: int = 8) -> None:
         """Writes a file, whole or not at all.
 
@@ -150,7 +158,7 @@ class Image(Mapping[str, npt.NDArray[Any]]):
             _native.save_png(path, np.ascontiguousarray(self["combined"]), bits)
         elif suffix == ".exr":
             channels = [(CHANNELS[name], np.ascontiguousarray(self[name])) for name in self if name != "alpha"]
-            _native.save_exr(path, channels, cryptomatte_metadata(self.manifests))
+            _native.save_exr(path, channels, self.cryptomatte_metadata())
         else:
             raise InputError(f"{path}: unknown kind of picture {suffix!r}: expected .png or .exr")
 

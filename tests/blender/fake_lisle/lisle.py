@@ -153,28 +153,46 @@ class Area(_Light):
 
 
 class Entry:
-    def __init__(self, yarns, yarn, material, transform, object_id, name):
+    def __init__(self, yarns, yarn, material, transform, object_id, name, object_index, material_name, material_index):
         assert transform.shape == (4, 4) and transform.dtype == np.float64
         assert 0 < object_id < 2**32
         self.yarns, self.yarn, self.material = yarns, yarn, material
         self.transform, self.object_id, self.name = transform, object_id, name
+        self.object_index, self.material_name, self.material_index = object_index, material_name, material_index
 
 
 class Scene:
     def __init__(self, camera, lights=(), ambient=(0, 0, 0)):
         self.camera, self.lights, self.ambient, self.entries = camera, list(lights), ambient, []
 
-    def add(self, yarns, *, yarn, material, transform, object_id, name):
-        self.entries.append(Entry(yarns, yarn, material, transform, object_id, name))
+    def add(
+        self, yarns, *, yarn, material, transform, object_id, name, object_index, material_name, material_index
+    ):  # fmt: skip
+        labels = object_index, material_name, material_index
+        self.entries.append(Entry(yarns, yarn, material, transform, object_id, name, *labels))
+
+
+FURTHER_PASSES = {
+    "position": 3, "uv": 2, "vector": 4, "object_index": 1, "material_index": 1, "crypto_object": 12,
+    "crypto_material": 12, "diffuse": 3, "specular": 3, "transmission": 3, "scattered": 3, "ambient": 3, "shadow": 1,
+    "albedo": 3, "denoising_normal": 3,
+}  # fmt: skip
+
+
+class Image(dict):
+    def cryptomatte_metadata(self, layer_prefix=""):
+        layers = {"crypto_object": "CryptoObject", "crypto_material": "CryptoMaterial"}
+        return {f"cryptomatte/{name}": layer_prefix + layer for name, layer in layers.items() if name in self}
 
 
 class Renderer:
     adapter = SimpleNamespace(name="a stand-in, no GPU")
     _NAME = "render"
 
-    def render(self, scene, *, size, samples, region, transparent, progress, **settings):
+    def render(self, what, *, size, samples, region, transparent, progress, passes=(), **settings):
+        scene = what[len(what) // 2] if isinstance(what, list) else what
         scenes.append(
-            (scene, {"size": size, "samples": samples, "region": region, "transparent": transparent} | settings)
+            (what, {"size": size, "samples": samples, "region": region, "transparent": transparent} | settings)
         )
         _fail(self._NAME)
         if not progress(0.5):
@@ -212,14 +230,18 @@ class Renderer:
         if region is not None:
             x0, y0, x1, y1 = region
             image = {name: picture[height - y1 : height - y0, x0:x1] for name, picture in image.items()}
-        return image
+        height, width = image["depth"].shape
+        for name in passes:
+            channels = FURTHER_PASSES[name]
+            image[name] = np.full((height, width, channels)[: 2 if channels == 1 else 3], 0.5, np.float32)
+        return Image(image)
 
 
 class Reference(Renderer):
     _NAME = "reference"
 
-    def render(self, scene, *, bounces, **options):
+    def render(self, what, *, bounces, **options):
         assert bounces is None or bounces > 0
         unknown = set(options) - {"size", "samples", "region", "transparent", "progress", "shading", "seed"}
         assert not unknown, unknown
-        return super().render(scene, bounces=bounces, **options)
+        return super().render(what, bounces=bounces, **options)
