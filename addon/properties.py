@@ -220,8 +220,7 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
     )
     reference_bounces: IntProperty(
         name="Bounces",
-        description="Most times that light is scattered in a reference picture; 0 for any number. "
-        "With 1 fibers keep their diffuse part, which otherwise stands for light scattered between them",
+        description="Most times that light is scattered in a reference picture; 0 for any number",
         min=0,
         soft_max=64,
         max=65536,
@@ -247,8 +246,8 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
     )
     multiple_scattering: BoolProperty(
         name="Multiple Scattering",
-        description="Light that fibers send each other, which gives light yarn most of its colour. Computed once for each "
-        "yarn and material, for some seconds, and kept on disk",
+        description="Light that fibers send each other, which gives light yarn most of its colour. Computed once for "
+        "each yarn and material, for some seconds, and kept on disk",
         default=True,
         update=_tag,
     )

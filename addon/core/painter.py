@@ -43,7 +43,8 @@ class Task:
     samples: int
     draw: Callable
     """`draw(size, region, samples, first_sample, quality, go_on)` → (combined (h, w, 4), depth (h, w)), float32,
-    top row first. `quality` is one of `DRAFT`, `FIRST_SAMPLE`, `OTHER_SAMPLES`. `go_on()` is asked now and then; draws nothing and raises Stopped once it says False."""
+    top row first. `quality` is one of `DRAFT`, `FIRST_SAMPLE`, `OTHER_SAMPLES`. `go_on()` is asked now
+    and then; draws nothing and raises Stopped once it says False."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ REST_SHAPES = RestShapes()
 
 _SHADOW_TEXELS = (256, 512, 1024)
 _PHOTONS = (20_000, 20_000, 500_000)
-"""By the painter's quality: along one side of a shadow map, and of the tables of multiple scattering, whose final ones take
-seconds for a material that was never seen before."""
+"""By the painter's quality: along one side of a shadow map, and of the tables of multiple scattering, whose final ones
+take seconds for a material that was never seen before."""
 
 _numbers = itertools.count()
 

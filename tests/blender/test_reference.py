@@ -34,27 +34,6 @@ def test_its_settings_arrive(lisle):
 
 
 @pytest.mark.blender
-@pytest.mark.parametrize(
-    ("method", "shading", "bounces", "kept"),
-    [
-        ("REFERENCE", "physical", 0, False),
-        ("REFERENCE", "physical", 2, False),
-        ("REFERENCE", "physical", 1, True),
-        ("REFERENCE", "simple", 0, True),
-        ("REAL_TIME", "physical", 0, True),
-    ],
-)
-def test_light_between_fibers_is_not_counted_twice(lisle, method, shading, bounces, kept):
-    import bpy
-
-    scenes.curves("Yarn", scenes.line())
-    settings().method, settings().shading, settings().reference_bounces = method, shading, bounces
-    bpy.ops.render.render()
-    weights = [entry.material.diffuse_weight for entry in lisle.scenes[-1][0].entries]
-    assert weights == [lisle.Material.FIELDS["diffuse_weight"] if kept else 0.0]
-
-
-@pytest.mark.blender
 @pytest.mark.parametrize("name", ["InputError", "DeviceError", "Error"])
 def test_its_errors_stop_the_job(lisle, tmp_path, name):
     import bpy
