@@ -88,23 +88,50 @@ fn seen_point(yarn: Yarn, section: SectionPoint, view: vec3f) -> SeenPoint {
     return SeenPoint(section, v.unit, self_depth(yarn, section.position, v.unit), 0.5 * extinction * yarn.fiber_radius);
 }
 
-// Share of a light that the yarn's own fibers let through to a point that is seen; derived and tested in
-// native/precompute/src/self_shadow.rs, toward_light_of_seen.
-fn self_shadow(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> f32 {
-    let l = section_direction(seen.section, direction);
-    if l.size < 1e-4 {
-        return 1.0;
-    }
-    let depth = self_depth(yarn, seen.section.position, l.unit);
-    let half = 0.5 * acos(clamp(dot(l.unit, seen.view), -1.0, 1.0));
+// What two parallel rays to even places on a fiber's width share of their depths: SHARED_OVER_WIDTH of native/precompute/src/self_shadow.rs.
+const SHARED_OVER_WIDTH: f32 = 2.0 / 3.0;
+
+// Share of a light in the section's direction `l` that the yarn's own fibers let through to a place in it.
+fn share_let_through(yarn: Yarn, seen: SeenPoint, at: vec2f, l: vec2f, shared_depth: f32) -> f32 {
+    let depth = self_depth(yarn, at, l);
+    let half = 0.5 * acos(clamp(dot(l, seen.view), -1.0, 1.0));
     let in_common = seen.common_depth * (1.0 / max(tan(half), 1e-6) - 0.5 * PI + half);
-    let most = max(min(depth, seen.depth_to_viewer), 1e-9);
+    let most = max(shared_depth * min(depth, seen.depth_to_viewer), 1e-9);
     return exp(most * (1.0 - exp(-in_common / most)) - depth);
 }
 
+// What the yarn's own fibers let through of a light; derived and tested in native/precompute/src/self_shadow.rs.
+struct SelfShadow {
+    // To the point that is seen, where Lambert's term takes it in: toward_light_of_seen.
+    point: f32,
+    // Over its fiber's width, as lobes take it in: over_width_of_seen.
+    width: f32,
+}
+
+fn self_shadows(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> SelfShadow {
+    let l = section_direction(seen.section, direction);
+    if l.size < 1e-4 {
+        return SelfShadow(1.0, 1.0);
+    }
+    let q = seen.section.position;
+    let entry = q + 0.25 * PI * yarn.fiber_radius * (l.unit - seen.view);
+    return SelfShadow(
+        share_let_through(yarn, seen, q, l.unit, 1.0),
+        share_let_through(yarn, seen, entry, l.unit, SHARED_OVER_WIDTH),
+    );
+}
+
+// Over the fiber's width alone.
+fn self_shadow(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> f32 {
+    return self_shadows(yarn, seen, direction).width;
+}
+
+// HALF_WAY of native/precompute/src/self_shadow.rs.
+const HALF_WAY: f32 = 0.2;
+
 // What a point that is seen has of the sky beyond the mean over points there; sky_of_seen in native/precompute/src/self_shadow.rs.
 fn sky_of_seen(yarn: Yarn, seen: SeenPoint) -> f32 {
-    let share = vec2f(seen.depth_to_viewer, seen.common_depth) / vec2f(1.0 + seen.depth_to_viewer, seen.common_depth + 0.2);
+    let share = vec2f(seen.depth_to_viewer, seen.common_depth) / vec2f(1.0 + seen.depth_to_viewer, seen.common_depth + HALF_WAY);
     let border = 1.0 - 1.0 / f32(yarn.seen_sky_size);
     let place = clamp(2.0 * vec2f(share.x, sqrt(share.y)) - 1.0, vec2f(-border), vec2f(border));
     return square_table(yarn.seen_sky_table, yarn.seen_sky_size, 1.0, place);

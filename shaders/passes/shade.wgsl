@@ -154,19 +154,19 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
         if all(incident.irradiance <= vec3f(0.0)) {
             continue;
         }
-        let own = self_shadow(yarn, seen, incident.direction);
+        let own = self_shadows(yarn, seen, incident.direction);
         let passing = passing_light(yarn, albedo.through, light, incident, surface.tube, surface.position);
         let reflected = reflected_once(material, surface, incident.direction, view);
-        let straight = incident.irradiance * (own * passing.straight);
+        let straight = incident.irradiance * (own.width * passing.straight);
         shaded.once.specular += reflected.specular * straight;
         shaded.once.transmission += reflected.transmission * straight;
-        shaded.once.diffuse += reflected.diffuse * straight;
+        shaded.once.diffuse += reflected.diffuse * incident.irradiance * (own.point * passing.straight);
         shaded.arriving += luminance(straight);
         shaded.shining += luminance(incident.irradiance);
         if frame.multiple == 1u {
             // TT takes in what other yarns scatter as far as that half space is behind the fiber.
             let behind = 0.5 - 0.5 * dot(section_direction(section, incident.direction).unit, seen.view);
-            shaded.scattered += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own / PI);
+            shaded.scattered += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own.width / PI);
             // Fibers send each other light over about a yarn's radius, which blurs the shadows in it [Khungurn2017 §5.3.2]: another place for each sample.
             let aside = sky_direction(frame.sky_view);
             let place = surface.position + surface.tube.radius * (aside - incident.direction * dot(aside, incident.direction));

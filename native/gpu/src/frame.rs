@@ -18,15 +18,15 @@ use crate::upload::{Draws, SceneBuffers, empty_storage};
 use crate::{Aov, Error, Image, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
-const BLOCK: u32 = 256;
-const LANES: u32 = 64;
-const ROW: u32 = 32768;
+pub(crate) const BLOCK: u32 = 256;
+pub(crate) const LANES: u32 = 64;
+pub(crate) const ROW: u32 = 32768;
 
 /// Most pixels of a tile.
 const TILE_PIXELS: u64 = 1 << 22;
 
 /// Directions of the sky that a picture takes at least; `MOST_SKY_VIEWS` of `shaders/passes/shade.wgsl`.
-const LEAST_SKY_VIEWS: u32 = 8;
+pub(crate) const LEAST_SKY_VIEWS: u32 = 8;
 
 /// Bits of a visibility key for the place along a segment, and for depth.
 const PLACE_BITS: u32 = 10;

@@ -223,6 +223,54 @@ mod tests {
         assert_eq!(mismatches(&module), Vec::<String>::new());
     }
 
+    /// Constants that are written both here and in WGSL.
+    fn shared_constants() -> Vec<(&'static str, f64)> {
+        use crate::frame;
+        use lisle_precompute::{HALF_WAY, SHARED_OVER_WIDTH, TURNS, Transport, TransportSize};
+        let size = TransportSize::ALL;
+        vec![
+            ("BLOCK", frame::BLOCK.into()),
+            ("LANES", frame::LANES.into()),
+            ("ROW", frame::ROW.into()),
+            ("MOST_SKY_VIEWS", frame::LEAST_SKY_VIEWS.into()),
+            ("TURNS_KEPT", TURNS as f64),
+            ("HALF_WAY", HALF_WAY),
+            ("SHARED_OVER_WIDTH", SHARED_OVER_WIDTH),
+            ("TRANSPORT_LIGHT_LONGITUDES", size.light_longitudes as f64),
+            ("TRANSPORT_LIGHT_AZIMUTHS", size.light_azimuths as f64),
+            ("TRANSPORT_RINGS", size.rings as f64),
+            ("TRANSPORT_VIEW_LONGITUDES", size.view_longitudes as f64),
+            ("TRANSPORT_VIEW_AZIMUTHS", size.view_azimuths as f64),
+            ("TRANSPORT_ANGLES", size.sides as f64),
+            ("TRANSPORT_REACH", Transport::REACH),
+        ]
+    }
+
+    /// Shared constants that a pass has otherwise, and how many it has at all.
+    fn constants_apart(source: &str) -> (Vec<String>, usize) {
+        let module = naga::front::wgsl::parse_str(source).expect("parses");
+        let value = |name: &str| {
+            let (_, constant) = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name))?;
+            match module.global_expressions[constant.init] {
+                naga::Expression::Literal(naga::Literal::U32(value)) => Some(f64::from(value)),
+                naga::Expression::Literal(naga::Literal::F32(value)) => Some(f64::from(value)),
+                _ => None,
+            }
+        };
+        let known: Vec<_> =
+            shared_constants().into_iter().filter_map(|(name, ours)| Some((name, ours, value(name)?))).collect();
+        let apart = known.iter().filter(|(_, ours, theirs)| (ours - theirs).abs() > 1e-6);
+        (apart.map(|(name, ours, theirs)| format!("{name}: {ours} here, {theirs} there")).collect(), known.len())
+    }
+
+    #[test]
+    fn shared_constants_match_the_shaders() {
+        let source = Pass::ResolveFibers.source();
+        assert_eq!(constants_apart(&source), (Vec::new(), shared_constants().len()));
+        let other = source.replace("const HALF_WAY: f32 = 0.2;", "const HALF_WAY: f32 = 0.25;");
+        assert_eq!(constants_apart(&other).0.len(), 1);
+    }
+
     #[test]
     fn a_moved_member_is_noticed() {
         let source = Pass::ResolveFibers(Film::Aovs).source();

@@ -7,10 +7,12 @@ use rayon::prelude::*;
 /// Height that marks a texel where no fiber is seen.
 pub const HOLE: f32 = -2.0;
 
-/// Views, layers, turns of the bundle along the ply and rows in all of them, texels across it.
+/// Turns of the bundle along the ply that a texture shows.
+pub const TURNS: usize = 4;
+
+/// Views, layers, rows in all turns, texels across the ply.
 const VIEWS: usize = 4;
 const LAYERS: usize = 6;
-const TURNS: usize = 4;
 const LENGTH: usize = 128 * TURNS;
 const WIDTH: usize = 128;
 

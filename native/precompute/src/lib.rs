@@ -13,9 +13,9 @@ mod self_shadow;
 mod tables;
 mod transport;
 
-pub use core_fiber::{CoreFiber, HOLE};
+pub use core_fiber::{CoreFiber, HOLE, TURNS};
 pub use density::SectionDensity;
 pub use occlusion::Occlusion;
-pub use self_shadow::SelfShadow;
+pub use self_shadow::{HALF_WAY, SHARED_OVER_WIDTH, SelfShadow};
 pub use tables::Tables;
 pub use transport::{Transport, TransportSize, TransportStore};

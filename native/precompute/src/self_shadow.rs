@@ -52,6 +52,9 @@ pub struct SelfShadow {
 pub const HALF_WAY: f64 = 0.2;
 const SEEN_SKY_SIZE: usize = 32;
 
+/// What two parallel rays to even places on a fiber's width share of their depths, [`SelfShadow::over_width_of_seen`].
+pub const SHARED_OVER_WIDTH: f64 = 2.0 / 3.0;
+
 /// Depth that a ray to a light has in common with the ray to the viewer, `angle` radians from it; at most `most`. `unit` is σ r/2.
 fn in_common(unit: f64, angle: f64, most: f64) -> f64 {
     let half = 0.5 * angle;
@@ -152,6 +155,19 @@ impl SelfShadow {
         let (light, view) = (self.at(psi_light, q), self.at(psi_view, q));
         let angle = 2.0 * (0.5 * (psi_light - psi_view)).sin().abs().asin();
         light - in_common(self.unit_in_common(q), angle, light.min(view))
+    }
+
+    /// Optical depth towards a light for a fiber that a viewer sees at q, for light that it takes in over its width.
+    ///
+    /// Such light enters on the side that faces it, not at q. Over a width that is drawn evenly, an edge is on average πr/4 before the axis, so that
+    /// the mean place where light enters is πr/4 (l − v) from the mean place that is seen. Nor do the two rays share all of their way if light and viewer are in one
+    /// direction: at places x and y on the width, each even in [−r, r], a fiber that covers one covers the other with a chance of 1 − |x − y| / 2r, on average ⅔.
+    pub fn over_width_of_seen(&self, psi_light: f64, psi_view: f64, q: DVec2) -> f64 {
+        let apart = DVec2::from_angle(psi_light) - DVec2::from_angle(psi_view);
+        let entry = q + 0.25 * PI * f64::from(self.fiber_radius) * apart;
+        let (light, view) = (self.at(psi_light, entry), self.at(psi_view, q));
+        let angle = 2.0 * (0.5 * apart.length()).min(1.0).asin();
+        light - in_common(self.unit_in_common(q), angle, SHARED_OVER_WIDTH * light.min(view))
     }
 
     /// Share of the sky that is open to a point that a viewer sees, above the mean over points there, seen or not.
@@ -311,6 +327,74 @@ mod tests {
             }
         }
         angles_deg.iter().zip(sums).map(|(a, s)| (*a, s.0 / s.2, s.1 / s.2)).collect()
+    }
+
+    /// As [`seen`], of light that a fiber takes in evenly over its width, as its lobes do: rays leave from its rim towards the light.
+    fn over_width(
+        yarn: &Yarn,
+        angles_deg: &[f64],
+        sections: u32,
+        predict: impl Fn(&Seen) -> f64,
+    ) -> Vec<(f64, f64, f64)> {
+        let (dealer, mut random) = (Sections::new(yarn), Random::new(7));
+        let radius = yarn.fiber_radius / yarn.outer_radius();
+        let mut sums = vec![(0.0, 0.0, 0.0); angles_deg.len()];
+        for _ in 0..sections {
+            let fibers = dealer.draw(&mut random);
+            for _ in 0..20 {
+                let psi = TAU * random.unit();
+                let view = DVec2::from_angle(psi);
+                let ray = view.perp() * (2.0 * random.unit() - 1.0);
+                let met = fibers.iter().enumerate().filter_map(|(k, fiber)| {
+                    let offset = (fiber.center - ray).dot(view.perp());
+                    let half = radius * radius - offset * offset;
+                    (half > 0.0).then(|| (k, (fiber.center - ray).dot(view) + half.sqrt()))
+                });
+                let Some((own, depth)) = met.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+                let q = ray + view * depth;
+                let place = 2.0 * random.unit() - 1.0;
+                for (k, angle) in angles_deg.iter().enumerate() {
+                    let to_light = psi + angle.to_radians();
+                    let light = DVec2::from_angle(to_light);
+                    let rim =
+                        fibers[own].center + radius * (light.perp() * place + light * (1.0 - place * place).sqrt());
+                    let open = !fibers.iter().enumerate().any(|(k, fiber)| {
+                        let w = fiber.center - rim;
+                        k != own && w.dot(light) > 0.0 && w.perp_dot(light).abs() < radius && w.length() > radius
+                    });
+                    let p = predict(&Seen { q, psi_view: psi, psi_light: to_light });
+                    let sum = &mut sums[k];
+                    *sum = (sum.0 + f64::from(u8::from(open)), sum.1 + p, sum.2 + 1.0);
+                }
+            }
+        }
+        angles_deg.iter().zip(sums).map(|(a, s)| (*a, s.0 / s.2, s.1 / s.2)).collect()
+    }
+
+    const WIDTH_DEG: [f64; 9] = [0.0, 5.0, 15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0];
+
+    #[test]
+    fn fibers_that_are_seen_take_in_as_much_light_over_their_width_as_explicit_fibers_leave_them() {
+        let mut worst_point = 0.0_f64;
+        for name in PRESET_NAMES {
+            let yarn = without_flyaways(&Yarn::preset(name).expect(name));
+            let table = SelfShadow::new(&SectionDensity::new(&yarn));
+            let found = over_width(&yarn, &WIDTH_DEG, 1500, |s| {
+                (-table.over_width_of_seen(s.psi_light, s.psi_view, s.q)).exp()
+            });
+            for (angle, expected, predicted) in found {
+                println!(
+                    "{name}, light {angle}° from the viewer: {expected:.3} of the light, {predicted:.3} predicted"
+                );
+                assert!((predicted - expected).abs() < 0.02, "{name}, {angle}°: {predicted} for {expected}");
+            }
+            // What is right for the point that is seen is rejected.
+            let point = over_width(&yarn, &WIDTH_DEG, 1500, |s| {
+                (-table.toward_light_of_seen(s.psi_light, s.psi_view, s.q)).exp()
+            });
+            worst_point = point.iter().map(|(_, e, p)| (e - p).abs()).fold(worst_point, f64::max);
+        }
+        assert!(worst_point > 0.1, "{worst_point}");
     }
 
     struct Seen {
