@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import compare
+import flicker
 import lisle
 import models
 import page
@@ -38,6 +39,10 @@ def main() -> None:
     start = time.monotonic()
     hot_spot = compare.hot_spot(renderer, arguments.samples)
     print(page.markdown(page.HOT_SPOT_COLUMNS, [page.hot_spot_row(*each) for each in hot_spot]), flush=True)
+    flickers = []
+    for found in flicker.flicker(renderer, arguments.samples):
+        flickers.append(found)
+        print(page.markdown(page.FLICKER_COLUMNS, [page.flicker_row(found)]), flush=True)
     results: list[compare.Result] = []
     made: dict[str, lisle.Yarns] = {}
     for case in cases:
@@ -52,7 +57,7 @@ def main() -> None:
             f"{page.percent(multiple.mean_error)} %, FLIP {multiple.flip:.3f}",
             flush=True,
         )
-        page.write(arguments.out, notes, results, hot_spot)
+        page.write(arguments.out, notes, results, hot_spot, flickers)
     print(arguments.out / "index.html")
 
 

@@ -97,3 +97,38 @@ def flip_noise(variance: npt.ArrayLike, reference: npt.ArrayLike, covered: npt.N
     variance, reference = _pair("variance", variance, reference)
     noise = np.random.default_rng(1).normal(size=reference.shape) * np.sqrt(variance)
     return flip(np.maximum(reference + noise, 0), reference, covered)[0]
+
+
+def moved_back(later: npt.ArrayLike, motion: npt.ArrayLike) -> tuple[Picture, npt.NDArray[np.bool_]]:
+    """A later picture at the places of an earlier one, bilinear, and where it shows them.
+
+    `motion`: pixels by which what is seen at each pixel of the earlier one moves, columns and rows, (h, w, 2).
+    """
+    later, motion = _checked("later", later), np.asarray(motion, np.float64)
+    height, width = later.shape[:2]
+    if motion.shape != (height, width, 2):
+        raise ValueError(f"motion: expected shape {(height, width, 2)}, got {motion.shape}")
+    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
+    x, y = columns + motion[..., 0], rows + motion[..., 1]
+    shown = (x >= 0) & (x <= width - 1) & (y >= 0) & (y <= height - 1)
+    left = np.clip(np.floor(x), 0, width - 2).astype(int)
+    top = np.clip(np.floor(y), 0, height - 2).astype(int)
+    across, down = np.clip(x - left, 0, 1)[..., None], np.clip(y - top, 0, 1)[..., None]
+    upper = later[top, left] * (1 - across) + later[top, left + 1] * across
+    lower = later[top + 1, left] * (1 - across) + later[top + 1, left + 1] * across
+    return upper * (1 - down) + lower * down, shown
+
+
+def squared_change(pictures: list[list[Picture]], motion: npt.ArrayLike) -> tuple[float, float]:
+    """Sums over the pixels shown twice: the squared change from one frame to the next, and the first one's squares.
+
+    `pictures`: [seed][frame], two of each. Noise that two seeds do not share is not in the mean of the product of
+    their changes.
+    """
+    changes, firsts = [], []
+    for earlier, later in pictures:
+        back, shown = moved_back(later, motion)
+        first = _checked("earlier", earlier)
+        changes.append((back - first)[shown])
+        firsts.append(first[shown])
+    return float((changes[0] * changes[1]).sum()), float((firsts[0] * firsts[1]).sum())

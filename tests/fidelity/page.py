@@ -7,6 +7,7 @@ from pathlib import Path
 import measures
 import numpy as np
 from compare import Pair, Result
+from flicker import Flicker
 from PIL import Image
 
 GOALS = """Goals: single scattering: mean colour within 2 %, FLIP at most 0.05 near and 0.03 far; with multiple
@@ -35,6 +36,16 @@ COLUMNS = (
 
 HOT_SPOT_COLUMNS = ("angle °", "yarn: mean %", "± %", "one fiber: mean %", "± %")
 
+FLICKER_COLUMNS = (
+    "sequence",
+    "most motion px",
+    "reference, motion and all %",
+    "reference %",
+    "renderer %",
+    "beyond the reference %",
+    "lengths anew in each frame %",
+)
+
 Row = Sequence[str]
 
 
@@ -57,6 +68,18 @@ def row(result: Result) -> Row:
 def hot_spot_row(angle: int, yarn: float, noise: float, one: float, one_noise: float) -> Row:
     """Of `HOT_SPOT_COLUMNS`."""
     return [str(angle), percent(yarn), f"{100 * noise:.1f}", percent(one), f"{100 * one_noise:.1f}"]
+
+
+def flicker_row(found: Flicker) -> Row:
+    """Of `FLICKER_COLUMNS`."""
+    numbers = (found.still, found.reference, found.renderer)
+    return [
+        found.sequence,
+        f"{found.moved_pixels:.2f}",
+        *(f"{100 * number:.2f}" for number in numbers),
+        percent(found.renderer / found.reference - 1),
+        f"{100 * found.anew:.2f}",
+    ]
 
 
 def markdown(columns: Row, rows: Iterable[Row]) -> str:
@@ -93,7 +116,11 @@ figure { margin: 1em 0 } pre { white-space: pre-wrap }"""
 
 
 def write(
-    folder: Path, notes: str, results: list[Result], hot_spot: list[tuple[int, float, float, float, float]]
+    folder: Path,
+    notes: str,
+    results: list[Result],
+    hot_spot: list[tuple[int, float, float, float, float]],
+    flickers: list[Flicker],
 ) -> None:
     """Writes `index.html` with its pictures, and `tables.md`."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -106,10 +133,13 @@ def write(
             figures.append(f'<figure><figcaption>{caption}</figcaption><img src="{name}" alt=""></figure>')
     rows = [row(result) for result in results]
     sun_rows = [hot_spot_row(*each) for each in hot_spot]
+    flicker_rows = [flicker_row(found) for found in flickers]
     body = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Fidelity</title><style>{STYLE}</style>
 <h1>Fidelity</h1><pre>{html.escape(notes)}</pre><p>{GOALS}</p>{_table(COLUMNS, rows)}
 <h2>Self-shadow against the angle between light and view</h2>{_table(HOT_SPOT_COLUMNS, sun_rows)}
+<h2>Change from frame to frame</h2>{_table(FLICKER_COLUMNS, flicker_rows)}
 <h2>Pictures</h2><p>Reference; picture; difference, red too bright, blue too dark; FLIP.</p>{"".join(figures)}</html>"""
     (folder / "index.html").write_text(body, encoding="utf-8")
-    tables = f"{notes}\n\n{markdown(COLUMNS, rows)}\n{markdown(HOT_SPOT_COLUMNS, sun_rows)}"
-    (folder / "tables.md").write_text(tables, encoding="utf-8")
+    tables = [(COLUMNS, rows), (HOT_SPOT_COLUMNS, sun_rows), (FLICKER_COLUMNS, flicker_rows)]
+    text = "\n".join([f"{notes}\n", *(markdown(*table) for table in tables)])
+    (folder / "tables.md").write_text(text, encoding="utf-8")

@@ -116,3 +116,35 @@ def test_suns_come_from_where_they_say():
     toward_camera = scene.camera.world_from_camera[:3, 2]
     assert np.dot(scene.lights[0].direction, toward_camera) > 0
     assert np.linalg.det(models.frame()) == pytest.approx(1)
+
+
+def waves(shift, brightness=1.0):
+    """A picture that moves by a shift in pixels, columns and rows."""
+    x, y = np.meshgrid(np.arange(48) - shift[0], np.arange(48) - shift[1])
+    value = brightness * (1.5 + np.sin(0.35 * x + 0.1 * y) * np.cos(0.25 * y))
+    return np.repeat(value[..., None], 3, axis=2)
+
+
+def change(pictures, motion):
+    change, square = measures.squared_change(pictures, np.broadcast_to(np.asarray(motion, float), (48, 48, 2)))
+    return np.sqrt(max(change, 0) / square)
+
+
+def test_motion_is_no_flicker_once_it_is_compensated():
+    pictures = [[waves((0, 0)), waves((2.5, -1.25))]] * 2
+    # Half-way between pixels, the linear interpolation of a wave is off by 0.35² / 8 = 0.015 of it.
+    assert change(pictures, (2.5, -1.25)) < 0.015
+    assert change(pictures, (0, 0)) > 0.2
+    assert change(pictures, (-2.5, 1.25)) > 0.3
+
+
+def test_a_picture_that_brightens_flickers_by_as_much():
+    assert change([[waves((0, 0)), waves((3, 0), brightness=1.1)]] * 2, (3, 0)) == pytest.approx(0.1, rel=0.02)
+
+
+def test_noise_is_no_flicker():
+    noise = np.random.default_rng(3)
+    pictures = [[waves((0, 0)) + noise.uniform(0, 0.5, (48, 48, 3)) for _ in range(2)] for _ in range(2)]
+    assert change(pictures, (0, 0)) < 0.03
+    same = [pictures[0], pictures[0]]
+    assert change(same, (0, 0)) > 0.08, "noise that both have is seen"

@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn shared_constants_match_the_shaders() {
-        let source = Pass::ResolveFibers.source();
+        let source = Pass::ResolveFibers(Film::Aovs).source();
         assert_eq!(constants_apart(&source), (Vec::new(), shared_constants().len()));
         let other = source.replace("const HALF_WAY: f32 = 0.2;", "const HALF_WAY: f32 = 0.25;");
         assert_eq!(constants_apart(&other).0.len(), 1);
