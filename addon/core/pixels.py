@@ -30,6 +30,11 @@ def cut_channels(image, first, count):
     return np.pad(found, ((0, 0), (0, 0), (0, missing))) if missing else found
 
 
+def linear_from_srgb(values):
+    """Light of display codes in 0 to 1, IEC 61966-2-1; float32."""
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4).astype(np.float32)
+
+
 def stable_id(*identity):
     """A number from 1 to 2²⁴ − 1 that is the same for the same identity in every process.
 

@@ -11,7 +11,7 @@ from ..core.errors import Cancelled, LisleError, SceneError
 from ..core.pixels import look_up
 from ..export.camera import native_camera
 from ..export.scene import collect
-from ..export.world import ambient_radiance
+from ..export.world import read_world
 from . import reference
 from .assembly import add_objects
 from .job import REST_SHAPES
@@ -118,10 +118,12 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
         note("the view layer shows no curves")
     at_rest = REST_SHAPES.find(lisle, engine, depsgraph, content)
     camera = engine.camera_override or depsgraph.scene.camera
-    ambient = ambient_radiance(depsgraph.scene.world, note)
+    world = read_world(lisle, depsgraph.scene.world, note)
 
     def scene_of(moved, seen_from):
-        scene = lisle.Scene(camera=seen_from, lights=content.lights, ambient=ambient)
+        scene = lisle.Scene(
+            camera=seen_from, lights=content.lights, ambient=world.ambient, environment=world.environment
+        )
         return scene, add_objects(lisle, scene, moved, at_rest, REST_SHAPES)
 
     scene, pass_index_of = scene_of(content, native_camera(lisle, camera, depsgraph, frame_size))

@@ -7,6 +7,7 @@ It is forgotten between jobs, because anything may have been edited there.
 import bpy
 from bpy.app.handlers import persistent
 
+from ..export.world import forget_images
 from .rest import RestShapes
 
 REST_SHAPES = RestShapes()
@@ -25,6 +26,7 @@ def not_said_before(sentences):
 def _forget(*_):
     REST_SHAPES.clear()
     _said.clear()
+    forget_images()
 
 
 _HANDLERS = ("render_init", "render_complete", "render_cancel", "load_pre")

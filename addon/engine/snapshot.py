@@ -5,7 +5,7 @@ import itertools
 
 from ..core.painter import Stopped
 from ..export.scene import collect
-from ..export.world import ambient_radiance
+from ..export.world import DARK, forget_images, read_world
 from .assembly import add_objects
 from .renderer import drop, renderer
 from .rest import RestShapes
@@ -30,8 +30,10 @@ class Snapshot:
         self.notes = []
         self.content = collect(lisle, depsgraph, self.notes.append, shows=shows)
         self._at_rest = REST_SHAPES.known(scene, depsgraph.view_layer, self.content)
-        self._ambient = ambient_radiance(scene.world, self.notes.append)
-        self.background = None if scene.render.film_transparent else self._ambient
+        if depsgraph.id_type_updated("IMAGE"):
+            forget_images()
+        self._world = read_world(lisle, scene.world, self.notes.append)
+        self.background = None if scene.render.film_transparent else self._world.ambient
         """Scene-linear colour behind the yarns, None if it is transparent."""
         self._native = None
         settings = scene.lisle
@@ -52,7 +54,7 @@ class Snapshot:
             self._settings == other._settings
             and self._multiple_scattering == other._multiple_scattering
             and self.samples == other.samples
-            and self._ambient == other._ambient
+            and self._world.equals(other._world)
             and self.content.equals(other.content)
             and all(
                 self._at_rest[key] is other._at_rest[key] or self._at_rest[key].equals(other._at_rest[key])
@@ -96,12 +98,11 @@ class Snapshot:
     def _scene(self, camera, lighting):
         """The lisle.Scene; made at the first call, in the painter's thread."""
         if self._native is None:
-            scene = self._lisle.Scene(camera=camera, lights=self.content.lights, ambient=self._ambient)
+            scene = self._lisle.Scene(camera=camera)
             add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES)
             self._native = scene
         self._native.camera = camera
-        if lighting is None:
-            self._native.lights, self._native.ambient = self.content.lights, self._ambient
-        else:
-            self._native.lights, self._native.ambient = lighting, (0.0, 0.0, 0.0)
+        world = self._world if lighting is None else DARK
+        self._native.lights = self.content.lights if lighting is None else lighting
+        self._native.ambient, self._native.environment = world.ambient, world.environment
         return self._native

@@ -192,7 +192,9 @@ struct Light {
     shadow_view_count: u32,
     // Spot: cosines at which its cone begins and ends to fade; (-2, -2) for none.
     cone: vec2f,
-    padding: vec2f,
+    // First of its maps about all meshes, and how many: 0, 1 or 6.
+    wide_view: u32,
+    wide_view_count: u32,
 }
 
 struct ShadowView {
@@ -203,4 +205,50 @@ struct ShadowView {
     // Texels per unit at w = 1.
     texels_per_unit: f32,
     near: f32,
+    // Texels along one side, from the corner of its map.
+    side: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32,
+}
+
+// A picture of the sky.
+struct Sky {
+    // A rotation.
+    environment_from_render_x: vec4f,
+    environment_from_render_y: vec4f,
+    environment_from_render_z: vec4f,
+    // Width and height; 0 without one.
+    size: vec2u,
+    strength: f32,
+    padding: f32,
+}
+
+const NONE: u32 = 0xffffffffu;
+const MESH_SHADED: u32 = 0u;
+const MESH_SHADOW_CATCHER: u32 = 1u;
+const MESH_HOLDOUT: u32 = 2u;
+
+// All meshes, as one sample sees them.
+struct Meshes {
+    // Clip depth × w is clip_depth.x × distance along the view axis + clip_depth.y.
+    clip_depth: vec2f,
+    draw_count: u32,
+    // First of the maps about all meshes for the sample's directions of the sky, or NONE.
+    wide_sky_view: u32,
+}
+
+// One mesh, or one instance of it.
+struct MeshDraw {
+    render_from_object_x: vec4f,
+    render_from_object_y: vec4f,
+    render_from_object_z: vec4f,
+    color: vec3f,
+    kind: u32,
+    // Triangles of all instances count on.
+    first_triangle: u32,
+    // Of its geometry; first_normal is NONE if it is flat.
+    first_corner: u32,
+    first_position: u32,
+    first_normal: u32,
 }

@@ -118,3 +118,17 @@ fn add_aovs(index: u32, draw: u32, surface: Surface, shaded: Shaded) {
         }
     }
 }
+
+// Of a point of a mesh: what a yarn's place would say stays 0.
+fn add_mesh_aovs(index: u32, draw: u32, position: vec3f, color: vec3f, shaded: Shaded) {
+    add_light(index, shaded);
+    if frame.plane_matte != NO_PLANE {
+        add_matte(index, draw);
+    }
+    if frame.plane_albedo != NO_PLANE {
+        add_aov(frame.plane_albedo, index, color);
+    }
+    if frame.first == 1u && frame.plane_position != NO_PLANE {
+        add_aov(frame.plane_position, index, position);
+    }
+}

@@ -1,5 +1,6 @@
 // How it works: one thread a pixel. Empty pixels take the background; the others go to the list of those that show fibers
-// or of those that show cores, so that neighbouring threads of the resolve passes do the same. The lists' order varies, the
+// or of those that show cores, so that neighbouring threads of the resolve passes do the same. Those
+// that show meshes are left to resolve_meshes. The lists' order varies, the
 // picture does not: a pixel's sample depends on nothing else.
 
 @group(0) @binding(21) var<storage, read_write> resolve_dispatch: array<atomic<u32>, 8>;
@@ -12,9 +13,16 @@ fn classify(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
     if index >= pixels {
         return;
     }
+    if seen_triangle(index) != 0u {
+        return;
+    }
     let words = keys[index];
     if words.y == 0u {
-        let color = select(vec4f(0.0), vec4f(frame.background, 1.0), frame.opaque_background == 1u);
+        var color = vec4f(0.0);
+        if frame.opaque_background == 1u {
+            let pixel = frame.origin + vec2u(index % frame.size.x, index / frame.size.x);
+            color = vec4f(background_at(vec2f(pixel) + 0.5), 1.0);
+        }
         add_sample(index, color, vec3f(0.0), vec3f(0.0), 1e10, 0.0);
         return;
     }

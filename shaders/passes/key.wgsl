@@ -26,6 +26,12 @@ fn make_key(owner: Key, depth: f32, place: u32) -> Key {
     return Key((code << (32u - frame.depth_bits)) | owner.high, owner.low | place);
 }
 
+// Distance along the view axis.
+fn key_depth(key: Key) -> f32 {
+    let code = f32(key.high >> (32u - frame.depth_bits)) + 0.5;
+    return frame.depth_min + (1.0 - code / exp2(f32(frame.depth_bits))) / frame.depth_scale;
+}
+
 fn key_parts(key: Key) -> KeyParts {
     let inner_bits = frame.slot_bits + frame.place_bits;
     let id_high = key.high & ((1u << (32u - frame.depth_bits)) - 1u);

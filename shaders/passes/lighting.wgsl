@@ -162,6 +162,8 @@ const FILTER: i32 = 3;
 struct Shadow {
     // Share that they let through, filtered over the shadow map's texels.
     open: f32,
+    // Share that meshes take, which let nothing through.
+    solid: f32,
     // Way through yarns and gaps of the light that they do not, render space.
     way: f32,
 }
@@ -169,29 +171,33 @@ struct Shadow {
 fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> Shadow {
     let view = shadow_views[view_index];
     let texel = to_pixel(view.texel_from_render, position);
-    let nearness = 1.0 - (texel.w - bias - view.depth_min) * view.depth_scale;
+    // A texel without anything holds 0.
+    let nearness = max(1.0 - (texel.w - bias - view.depth_min) * view.depth_scale, 0.0);
     let corner = floor(texel.xy - 0.5 * f32(FILTER - 1));
     let share = texel.xy - 0.5 * f32(FILTER - 1) - corner;
     let first = vec2i(corner);
     let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
     var blocked = 0.0;
+    var solid = 0.0;
     var above = 0.0;
     for (var y = 0; y < FILTER; y++) {
         for (var x = 0; x < FILTER; x++) {
             let at = first + vec2i(x, y);
-            var over = 0.0;
+            var word = 0u;
             if all(at >= vec2i(0)) && all(at < vec2i(i32(frame.shadow_resolution))) {
-                let depth = bitcast<f32>(shadow_depths[base + u32(at.y) * frame.shadow_resolution + u32(at.x)]);
-                over = max(depth - nearness, 0.0);
+                word = shadow_depths[base + u32(at.y) * frame.shadow_resolution + u32(at.x)];
             }
+            let over = max(bitcast<f32>(word) - nearness, 0.0);
             let weight_x = select(select(1.0, share.x, x == FILTER - 1), 1.0 - share.x, x == 0);
             let weight_y = select(select(1.0, share.y, y == FILTER - 1), 1.0 - share.y, y == 0);
-            blocked += select(0.0, weight_x * weight_y, over > 0.0);
+            let weight = select(0.0, weight_x * weight_y, over > 0.0);
+            blocked += weight;
+            solid += select(0.0, weight, (word & 1u) == 1u);
             above += weight_x * weight_y * over;
         }
     }
-    let open = 1.0 - blocked / f32((FILTER - 1) * (FILTER - 1));
-    return Shadow(open, above / (max(blocked, 1e-6) * view.depth_scale) + bias);
+    let taps = f32((FILTER - 1) * (FILTER - 1));
+    return Shadow(1.0 - blocked / taps, solid / taps, above / (max(blocked, 1e-6) * view.depth_scale) + bias);
 }
 
 // Which face of a cube map looks along a direction: +x, -x, +y, -y, +z, -z.
@@ -211,7 +217,7 @@ const SHADOW_BIAS: f32 = 0.5;
 
 fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -> Shadow {
     if light.shadow_view_count == 0u {
-        return Shadow(1.0, 0.0);
+        return Shadow(1.0, 0.0, 0.0);
     }
     let way_out = distance_out_of_tube(tube, position, incident.direction);
     let outside = position + incident.direction * way_out;
@@ -229,7 +235,7 @@ fn sky_direction(view_index: u32) -> vec3f {
 }
 
 // Share of that sky's light that other yarns let through.
-fn sky_open(view_index: u32, direction: vec3f, tube: Tube, position: vec3f) -> f32 {
+fn sky_open(view_index: u32, direction: vec3f, tube: Tube, position: vec3f) -> Shadow {
     let outside = position + direction * distance_out_of_tube(tube, position, direction);
-    return shadow_map(view_index, outside, SHADOW_BIAS * tube.radius).open;
+    return shadow_map(view_index, outside, SHADOW_BIAS * tube.radius);
 }

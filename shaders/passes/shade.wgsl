@@ -66,12 +66,14 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
     let share = 1.0 / f32(max(frame.sky_view_count, 1u));
     for (var i = 0u; i < frame.sky_view_count; i++) {
         let direction = sky_direction(frame.sky_view + i);
-        let open = mix(yarn.through_circle, 1.0, sky_open(frame.sky_view + i, direction, surface.tube, surface.position));
+        let shadow = sky_open(frame.sky_view + i, direction, surface.tube, surface.position);
+        let by_yarns = (1.0 - shadow.open - shadow.solid) * (1.0 - yarn.through_circle);
+        let open = 1.0 - shadow.solid - by_yarns;
         around.open += share * open;
         if frame.multiple == 1u {
             let scattered = transport_ambient(transport, seen.section, direction) * hidden;
             around.sky += (share * open) * scattered;
-            around.yarns[i] = (share * (1.0 - open)) * (scattered + even * self_shadow(yarn, seen, direction));
+            around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
         }
     }
     return around;
@@ -95,7 +97,8 @@ fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, t
     let shadow = light_shadow(light, incident, tube, position);
     let yarns_above = max(shadow.way / (2.0 * tube.radius), 1.0);
     let between_fibers = pow(yarn.through_circle, min(yarns_above, MOST_YARNS_ABOVE));
-    let blocked = 1.0 - shadow.open;
+    // Meshes let nothing through.
+    let blocked = 1.0 - shadow.open - shadow.solid;
     var spread = vec3f(0.0);
     if frame.multiple == 1u {
         // Through air it is spread as well, so that all of the way counts.

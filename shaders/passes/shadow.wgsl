@@ -61,7 +61,7 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
                         // Non-negative floats order like their bits.
                         atomicMax(
                             &shadow_depths[base + u32(texel.y) * frame.shadow_resolution + u32(texel.x)],
-                            bitcast<u32>(nearness),
+                            bitcast<u32>(nearness) & 0xfffffffeu,
                         );
                     }
                 }

@@ -124,12 +124,19 @@ def test_every_panel_draws(addon):
     import bpy
 
     obj = scenes.curves("Yarn", scenes.line())
+    world = bpy.data.worlds.new("World")
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
+    background = world.node_tree.get_output_node("ALL").inputs["Surface"].links[0].from_node
+    texture = world.node_tree.nodes.new("ShaderNodeTexEnvironment")  # without a picture
+    world.node_tree.links.new(texture.outputs["Color"], background.inputs["Color"])
     context = Context(
         engine="LISLE",
         scene=bpy.context.scene,
         view_layer=bpy.context.view_layer,
         object=obj,
         material=bpy.data.materials.new("Material"),
+        world=world,
     )
     shown = set()
     for panel in addon.ui._PANELS:

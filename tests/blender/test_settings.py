@@ -218,6 +218,104 @@ def test_camera_sees_what_blender_says(lisle, kind, fit, size):
         np.testing.assert_allclose(project(native, point) / 2 + 0.5, expected[:2], atol=1e-5)
 
 
+def sky_world(name="Sky", size=(8, 4), is_float=True, mapping=None):
+    """A world lit by a generated picture: (world, image, its texels (h, w, 4), row 0 at the top)."""
+    import bpy
+
+    world = bpy.data.worlds.new(name)
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
+    tree = world.node_tree
+    image = bpy.data.images.new(name, *size, float_buffer=is_float)
+    texels = np.random.default_rng(3).uniform(0, 1, (size[1], size[0], 4)).astype(np.float32)
+    image.pixels.foreach_set(texels[::-1].ravel())
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    background = tree.get_output_node("ALL").inputs["Surface"].links[0].from_node
+    background.inputs["Strength"].default_value = 1.5
+    tree.links.new(texture.outputs["Color"], background.inputs["Color"])
+    if mapping is not None:
+        node = tree.nodes.new("ShaderNodeMapping")
+        node.vector_type = mapping
+        node.inputs["Rotation"].default_value = (0.1, -0.2, 0.9)
+        coordinates = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(coordinates.outputs["Generated"], node.inputs["Vector"])
+        tree.links.new(node.outputs["Vector"], texture.inputs["Vector"])
+    return world, image, texels
+
+
+def drawn_world(lisle, world):
+    """(lisle.Scene as drawn, notes about it)."""
+    import bpy
+    from lisle_blender.export.world import plan_of
+
+    bpy.context.scene.world = world
+    bpy.ops.render.render()
+    notes = []
+    plan_of(world, notes.append)
+    return lisle.scenes[-1][0], notes
+
+
+def test_world_picture_lights_and_turns(lisle):
+    from mathutils import Euler
+
+    scenes.curves("Yarn", scenes.line())
+    turn = np.array(Euler((0.1, -0.2, 0.9)).to_matrix())
+    for mapping, expected in ((None, np.eye(3)), ("POINT", turn.T), ("TEXTURE", turn)):
+        world, _, texels = sky_world(mapping=mapping)
+        scene, notes = drawn_world(lisle, world)
+        assert notes == []
+        assert scene.ambient == (0, 0, 0)
+        np.testing.assert_array_equal(scene.environment.image.texels, texels[:, :, :3])
+        np.testing.assert_allclose(scene.environment.world_from_environment, expected, atol=1e-6)
+        assert scene.environment.strength == 1.5
+
+
+def test_world_picture_of_bytes_is_decoded(lisle):
+    scenes.curves("Yarn", scenes.line())
+    world, image, texels = sky_world(is_float=False)
+    codes = np.round(texels[:, :, :3].astype(np.float64) * 255) / 255
+
+    def drawn(space):
+        image.colorspace_settings.name = space  # which makes the generated pixels again
+        image.pixels.foreach_set(texels[::-1].ravel())
+        return drawn_world(lisle, world)[0].environment.image.texels
+
+    linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
+    np.testing.assert_allclose(drawn("sRGB"), linear, atol=1e-4)
+    np.testing.assert_allclose(drawn("Non-Color"), codes, atol=1e-4)
+
+
+def test_world_picture_is_read_once_until_its_pixels_change(lisle):
+    import bpy
+    from lisle_blender.export.world import forget_images, read_world
+
+    world, image, texels = sky_world()
+    first = read_world(lisle, world, print)
+    assert read_world(lisle, world, print).environment.image is first.environment.image
+    assert first.equals(read_world(lisle, world, print))
+    world.node_tree.get_output_node("ALL").inputs["Surface"].links[0].from_node.inputs["Strength"].default_value = 2
+    assert not first.equals(read_world(lisle, world, print))
+    image.pixels.foreach_set(np.zeros(texels.size, np.float32))
+    forget_images()
+    assert not read_world(lisle, world, print).environment.image.texels.any()
+    bpy.context.scene.world = None
+
+
+def test_what_a_world_leaves_out_is_noted(lisle):
+    scenes.curves("Yarn", scenes.line())
+    world, _, _ = sky_world(mapping="POINT")
+    mapping = next(node for node in world.node_tree.nodes if node.type == "MAPPING")
+    mapping.inputs["Scale"].default_value = (1, 1, 2)
+    scene, notes = drawn_world(lisle, world)
+    assert len(notes) == 1 and "only the rotation" in notes[0]
+    texture = next(node for node in world.node_tree.nodes if node.type == "TEX_ENVIRONMENT")
+    texture.image = None
+    scene, notes = drawn_world(lisle, world)
+    assert len(notes) == 1 and "no picture" in notes[0]
+    assert scene.environment is None and scene.ambient == (0, 0, 0)
+
+
 def test_world_without_nodes_and_with_unreadable_ones(lisle):
     import bpy
 

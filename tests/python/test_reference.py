@@ -121,13 +121,14 @@ def test_what_cannot_be_drawn_is_named(scene, options, message):
 
 
 def test_an_even_environment_is_ambient_light(scene):
-    dark = lisle.Scene(scene.camera, [], (0, 0, 0))
-    bright = lisle.Scene(scene.camera, [], (0.7, 0.7, 0.7))
-    for each in (dark, bright):
-        each.add(scene.objects[0].yarns, scene.objects[0].yarn, scene.objects[0].material)
-    even = lisle.Environment(np.full((8, 16, 3), 0.7))
-    a = draw(dark, environment=even, samples=32, transparent=False)
-    b = draw(bright, samples=32, transparent=False)
+
+    def under(ambient, environment=None):
+        lit = lisle.Scene(scene.camera, [], (ambient, ambient, ambient), environment)
+        lit.add(scene.objects[0].yarns, scene.objects[0].yarn, scene.objects[0].material)
+        return draw(lit, samples=32, transparent=False)
+
+    a = under(0.0, lisle.Environment(np.full((8, 16, 3), 0.35), strength=2.0))
+    b = under(0.7)
 
     def deviation(a, b):
         error = np.sqrt(a["variance"].sum(dtype=np.float64) + b["variance"].sum(dtype=np.float64))
@@ -135,8 +136,7 @@ def test_an_even_environment_is_ambient_light(scene):
 
     assert abs(deviation(a, b)) < 4
     assert np.allclose(a["combined"][a["object_id"] == 0][0], (0.7, 0.7, 0.7, 1.0), atol=0.3)
-    brighter = lisle.Environment(np.full((8, 16, 3), 0.8))
-    assert abs(deviation(draw(dark, environment=brighter, samples=32, transparent=False), b)) > 4
+    assert abs(deviation(under(0.0, lisle.Environment(np.full((8, 16, 3), 0.8))), b)) > 4
 
 
 def test_a_bright_texel_is_a_sun(scene):
@@ -150,9 +150,9 @@ def test_a_bright_texel_is_a_sun(scene):
     toward = np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)])
 
     def lit(lights, environment=None):
-        dark = lisle.Scene(scene.camera, lights, (0, 0, 0))
+        dark = lisle.Scene(scene.camera, lights, (0, 0, 0), environment)
         dark.add(scene.objects[0].yarns, scene.objects[0].yarn, scene.objects[0].material)
-        return draw(dark, environment=environment, samples=32, bounces=1)["combined"][..., 0].mean(dtype=np.float64)
+        return draw(dark, samples=32, bounces=1)["combined"][..., 0].mean(dtype=np.float64)
 
     expected = lit([lisle.Sun(direction=-toward, strength=3.0)])
     # Interpolation spreads the texel over its neighbours, and narrow lobes see it no point: 3 %.
@@ -165,15 +165,19 @@ def test_a_bright_texel_is_a_sun(scene):
 
 
 def test_an_environment_that_is_none_is_refused(scene):
-    for wrong in (np.zeros((4, 4)), np.zeros((4, 4, 4))):
-        with pytest.raises(lisle.InputError, match="radiance"):
+    for wrong in (np.zeros((4, 4)), np.zeros((4, 4, 2)), "sky.png"):
+        with pytest.raises(lisle.InputError, match="expected"):
             lisle.Environment(wrong)
     with pytest.raises(lisle.InputError, match="environment"):
-        draw(scene, environment=np.zeros((4, 8, 3)))
+        lisle.Scene(scene.camera, environment=np.zeros((4, 8, 3)))
     with pytest.raises(lisle.InputError, match=r"texel \(0, 0\)"):
-        draw(scene, environment=lisle.Environment(np.full((4, 8, 3), np.nan)))
+        lisle.Environment(np.full((4, 8, 3), np.nan))
     with pytest.raises(lisle.InputError, match="rotation"):
-        draw(scene, environment=lisle.Environment(np.ones((4, 8, 3)), np.zeros((3, 3))))
+        lisle.Environment(np.ones((4, 8, 3)), np.zeros((3, 3)))
+    with pytest.raises(lisle.InputError, match="the scene has its own"):
+        draw(scene, environment=lisle.Environment(np.ones((4, 8, 3))))
+    with pytest.raises(OSError, match=r"none\.exr"):
+        lisle.Environment("none.exr")
 
 
 def test_an_exr_keeps_the_variance(scene, tmp_path):

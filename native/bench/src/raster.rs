@@ -75,7 +75,14 @@ pub fn measure(
     let yarn = yarn();
     let width = 2.0 * RADIUS * yarn.fiber_radius / yarn.outer_radius();
     let objects = vec![scene::object(&Arc::new(patch()?), yarn)];
-    let scene = Scene { objects, lights: vec![scene::sun()], ambient: Vec3::ZERO, camera: camera() };
+    let scene = Scene {
+        objects,
+        meshes: Vec::new(),
+        lights: vec![scene::sun()],
+        ambient: Vec3::ZERO,
+        environment: None,
+        camera: camera(),
+    };
     let settings =
         Settings { lod_pixels: 0.0, shadow_resolution: 16, ..scene::settings(Shading::Simple, options.samples) };
     let figures = measure::picture(renderer, &scene, &settings)?;

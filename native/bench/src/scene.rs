@@ -35,7 +35,14 @@ pub fn sun() -> Light {
 
 /// Yarns in the light of one sun and a constant sky.
 pub fn lit(yarns: &Arc<Yarns>, camera: Camera) -> Scene {
-    Scene { objects: vec![object(yarns, yarn())], lights: vec![sun()], ambient: Vec3::splat(0.3), camera }
+    Scene {
+        objects: vec![object(yarns, yarn())],
+        meshes: Vec::new(),
+        lights: vec![sun()],
+        ambient: Vec3::splat(0.3),
+        environment: None,
+        camera,
+    }
 }
 
 /// Defaults of the renderer, at the size of the benchmark.

@@ -156,6 +156,26 @@ impl View {
         let far = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(self.far);
         (near, far.max(near + 1e-6 * near.abs().max(1e-6)))
     }
+
+    /// (a, b) of a hardware's depth (a z + b) / w for the distance z along the view axis: 1 at the near plane or, in an orthographic view,
+    /// before a box if that is farther; 0 at the far plane or behind the box.
+    pub fn clip_depth(&self, bounds: &Bounds) -> [f32; 2] {
+        if !self.orthographic {
+            let (a, b) = if self.far.is_finite() {
+                let share = self.near / (self.far - self.near);
+                (-share, share * self.far)
+            } else {
+                (0.0, self.near)
+            };
+            return [a as f32, b as f32];
+        }
+        let (near, far) = self.depth_range(bounds);
+        // A surface at the border counts.
+        let margin = 1e-3 * (far - near);
+        let (near, far) = ((near - margin).max(self.near), (far + margin).min(self.far));
+        [(-1.0 / (far - near)) as f32, (far / (far - near)) as f32]
+    }
+
     /// Pixels per unit of length at a point, render space; no nearer than the near plane.
     pub fn pixels_per_unit_at(&self, point: DVec3) -> f64 {
         let w = self.rows[2].dot(point.extend(1.0));

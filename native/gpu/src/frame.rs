@@ -7,15 +7,20 @@ use glam::{DVec3, Vec3};
 use crate::aov::{self, NEIGHBOUR_WORDS, Planes};
 use crate::cryptomatte;
 use crate::device::Gpu;
-use crate::layout;
-use crate::lights::{self, LightSample};
+use crate::environment::SkyBuffers;
+use crate::layout::{self, NONE};
+use crate::lights::{self, Extent, LightSample};
+use crate::mesh_raster::{MeshPipelines, MeshTargets};
+use crate::meshes::{MeshBuffers, MeshPlaces};
 use crate::motion::{Moment, Motion, Neighbour};
 use crate::pipelines::{Bindings, Pipelines};
 use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
 use crate::shader::{Film, Pass};
 use crate::timing::Timer;
 use crate::upload::{Draws, SceneBuffers, empty_storage};
-use crate::{Aov, Error, Image, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics};
+use crate::{
+    Aov, Environment, Error, Image, Labels, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics,
+};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
 pub(crate) const BLOCK: u32 = 256;
@@ -27,6 +32,10 @@ const TILE_PIXELS: u64 = 1 << 22;
 
 /// Directions of the sky that a picture takes at least; `MOST_SKY_VIEWS` of `shaders/passes/shade.wgsl`.
 pub(crate) const LEAST_SKY_VIEWS: u32 = 8;
+
+/// Directions of a picture of the sky that a picture takes at least, and one sample of it.
+const LEAST_ENVIRONMENT_SUNS: u32 = 16;
+const LEAST_ENVIRONMENT_SUNS_A_SAMPLE: u32 = 4;
 
 /// Bits of a visibility key for the place along a segment, and for depth.
 const PLACE_BITS: u32 = 10;
@@ -41,6 +50,8 @@ pub(crate) struct FrameInput<'a> {
     pub motion: &'a Motion<'a>,
     /// The frames before and after, if the vector pass is drawn.
     pub neighbours: Option<&'a [Neighbour; 2]>,
+    pub sky: &'a SkyBuffers,
+    pub meshes: &'a MeshBuffers,
 }
 
 impl FrameInput<'_> {
@@ -48,6 +59,22 @@ impl FrameInput<'_> {
     fn sky_views(&self) -> u32 {
         let is_seen = self.scene.ambient != Vec3::ZERO || self.settings.photons() > 0;
         if !is_seen { 0 } else { LEAST_SKY_VIEWS.div_ceil(self.settings.samples) }
+    }
+
+    /// The scene's picture of the sky, if any light comes from it.
+    fn environment(&self) -> Option<&Environment> {
+        self.scene.environment.as_ref().filter(|environment| environment.shines())
+    }
+
+    /// Directions of that picture per sample, each a sun of its own.
+    fn environment_suns(&self) -> u32 {
+        let most = LEAST_ENVIRONMENT_SUNS.div_ceil(self.settings.samples).max(LEAST_ENVIRONMENT_SUNS_A_SAMPLE);
+        self.environment().map_or(0, |_| most)
+    }
+
+    /// Lights per sample.
+    fn light_count(&self) -> u32 {
+        self.scene.lights.len() as u32 + self.environment_suns()
     }
 }
 
@@ -70,6 +97,9 @@ pub(crate) struct FrameBuffers {
     uniform: wgpu::Buffer,
     /// Of the passes that need a few numbers more.
     pass_uniform: wgpu::Buffer,
+    meshes: wgpu::Buffer,
+    mesh_draws: wgpu::Buffer,
+    mesh_targets: MeshTargets,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -78,9 +108,13 @@ struct Capacity {
     planes: u64,
     segments: u64,
     draws: u64,
+    meshes: u64,
     lights: u64,
     views: u64,
     shadow_resolution: u32,
+    /// Of the targets of meshes.
+    tile: [u32; 2],
+    carrier: u32,
 }
 
 /// Rectangles of at most so many pixels, 2048 or more, that cover a region: left, top, width, height.
@@ -96,6 +130,11 @@ fn tiles([left, top, width, height]: [u32; 4], most: u64) -> Vec<[u32; 4]> {
     tiles
 }
 
+/// Width and height that hold any of some tiles.
+fn most_of(tiles: &[[u32; 4]]) -> [u32; 2] {
+    tiles.iter().fold([1, 1], |[width, height], [_, _, w, h]| [width.max(*w), height.max(*h)])
+}
+
 fn bits_for(count: u32) -> u32 {
     32 - count.saturating_sub(1).leading_zeros()
 }
@@ -109,7 +148,9 @@ impl FrameBuffers {
         draws: &Draws,
         region: [u32; 4],
     ) -> Result<Self, Error> {
-        let views = u64::from(lights::most_views(&input.scene.lights, input.sky_views()));
+        let has_meshes = !input.meshes.is_empty();
+        let sky_views = input.sky_views() + input.environment_suns();
+        let views = u64::from(lights::most_views(&input.scene.lights, sky_views, has_meshes));
         // As many texels as one binding holds.
         let most_texels = gpu.limits.max_storage_buffer_binding_size / 4 / views.max(1);
         let shadow_resolution = input.settings.shadow_resolution.min(most_texels.isqrt() as u32);
@@ -122,9 +163,12 @@ impl FrameBuffers {
             planes: u64::from(input.planes.count),
             segments: u64::from(draws.segment_count),
             draws: draws.items.len() as u64,
-            lights: input.scene.lights.len() as u64,
+            meshes: input.scene.meshes.len() as u64,
+            lights: u64::from(input.light_count()),
             views,
             shadow_resolution,
+            tile: if has_meshes { most_of(&tiles(region, tile_pixels(gpu, &input.planes))) } else { [1, 1] },
+            carrier: if has_meshes { shadow_resolution } else { 1 },
         };
         if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
             return Ok(buffers);
@@ -159,6 +203,9 @@ impl FrameBuffers {
             uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::STORAGE),
             pass_uniform: uniform("pass", 16, wgpu::BufferUsages::UNIFORM),
             aovs: empty_storage(gpu, "passes", 4 * capacity.planes * capacity.pixels)?,
+            meshes: uniform("meshes of a sample", size_of::<layout::Meshes>(), wgpu::BufferUsages::STORAGE),
+            mesh_draws: empty_storage(gpu, "meshes", capacity.meshes * size_of::<layout::MeshDraw>() as u64)?,
+            mesh_targets: MeshTargets::new(gpu, capacity.tile, capacity.carrier),
             capacity,
         })
     }
@@ -181,6 +228,7 @@ impl FrameBuffers {
         .iter()
         .sum::<u64>()
             + film
+            + self.mesh_targets.bytes()
     }
 }
 
@@ -221,6 +269,7 @@ fn nearest_w(view: &layout::ShadowView) -> f64 {
 pub(crate) struct Recorder<'a> {
     gpu: &'a Gpu,
     pipelines: &'a Pipelines,
+    mesh_pipelines: Option<&'a MeshPipelines>,
     input: &'a FrameInput<'a>,
     frame: &'a FrameBuffers,
     uniform: layout::Frame,
@@ -231,6 +280,7 @@ pub(crate) struct Recorder<'a> {
     fiber_segments: u64,
     /// What the sample sees.
     moment: Moment,
+    mesh_places: MeshPlaces,
     /// Of the render space of the first sample.
     first_origin: DVec3,
 }
@@ -239,6 +289,7 @@ impl<'a> Recorder<'a> {
     pub fn new(
         gpu: &'a Gpu,
         pipelines: &'a Pipelines,
+        mesh_pipelines: Option<&'a MeshPipelines>,
         input: &'a FrameInput<'a>,
         frame: &'a FrameBuffers,
         moment: Moment,
@@ -260,6 +311,7 @@ impl<'a> Recorder<'a> {
         let mut recorder = Self {
             gpu,
             pipelines,
+            mesh_pipelines,
             input,
             frame,
             uniform: layout::Frame {
@@ -269,7 +321,7 @@ impl<'a> Recorder<'a> {
                 place_bits: PLACE_BITS,
                 depth_bits,
                 lod_pixels: settings.lod_pixels,
-                light_count: scene.lights.len() as u32,
+                light_count: input.light_count(),
                 physical: u32::from(settings.shading == Shading::Physical),
                 multiple: u32::from(settings.photons() > 0),
                 occlusion_table: u32::from(settings.occlusion == Occlusion::Table),
@@ -297,6 +349,7 @@ impl<'a> Recorder<'a> {
             fiber_segments: 0,
             first_origin: moment.view.origin,
             moment: moment.clone(),
+            mesh_places: MeshPlaces::new(),
         };
         recorder.see(moment);
         Ok(recorder)
@@ -307,6 +360,9 @@ impl<'a> Recorder<'a> {
         let Moment { view, draws } = &moment;
         let (depth_min, depth_max) = if draws.bounds.is_empty() { (0.0, 1.0) } else { view.depth_range(&draws.bounds) };
         self.gpu.queue.write_buffer(&self.frame.draws, 0, bytemuck::cast_slice(&draws.items));
+        self.mesh_places = self.input.meshes.place(self.input.scene, view.origin);
+        let items = bytemuck::cast_slice(&self.mesh_places.items);
+        self.gpu.queue.write_buffer(&self.frame.mesh_draws, 0, items);
         self.uniform = layout::Frame {
             pixels_per_unit: view.pixels_per_unit as f32,
             depth_min: depth_min as f32,
@@ -346,7 +402,7 @@ impl<'a> Recorder<'a> {
 
     fn bindings(&self) -> Bindings<'a> {
         let (scene, frame) = (self.input.buffers, self.frame);
-        Bindings::from([
+        let buffers: [(u32, &wgpu::Buffer); 30] = [
             (0, &frame.uniform),
             (1, &frame.draws),
             (2, &scene.curves),
@@ -369,8 +425,18 @@ impl<'a> Recorder<'a> {
             (19, &frame.film[2]),
             (20, &frame.pixel_list),
             (21, &frame.resolve_dispatch),
+            (30, &self.input.sky.sky),
+            (31, &self.input.sky.texels),
+            (32, &frame.meshes),
+            (33, &frame.mesh_draws),
+            (34, &self.input.meshes.positions),
+            (35, &self.input.meshes.corners),
+            (36, &self.input.meshes.normals),
             (40, &frame.aovs),
-        ])
+        ];
+        let mut bindings: Bindings = buffers.map(|(number, buffer)| (number, buffer.as_entire_binding())).into();
+        bindings.insert(37, wgpu::BindingResource::TextureView(&frame.mesh_targets.seen));
+        bindings
     }
 
     /// Draws a region: left, top, width, height.
@@ -411,7 +477,11 @@ impl<'a> Recorder<'a> {
             segments: self.moment.draws.real_segments,
             fiber_segments: self.fiber_segments,
             knot_bytes: self.input.buffers.knot_bytes() + self.frame.segment_work.size(),
-            gpu_bytes: self.input.buffers.knot_bytes() + self.input.buffers.table_bytes() + self.frame.bytes(),
+            gpu_bytes: self.input.buffers.knot_bytes()
+                + self.input.buffers.table_bytes()
+                + self.input.sky.bytes()
+                + self.input.meshes.bytes()
+                + self.frame.bytes(),
             passes: self.timer.totals(),
             uploaded_bytes: self.input.buffers.uploaded_bytes,
         };
@@ -444,22 +514,34 @@ impl<'a> Recorder<'a> {
         self.uniform.pixel_from_render = seen.pixel_from_render(jitter);
         self.uniform.viewer = seen.viewer;
 
-        let bounds = self.moment.draws.bounds;
+        let extent = Extent::new(self.moment.draws.bounds, self.mesh_places.bounds);
         let mut first_view_to_draw = 0;
-        if !bounds.is_empty() {
+        let mut meshes = self.meshes();
+        if !extent.is_empty() {
             let resolution = self.frame.capacity.shadow_resolution;
-            let mut lights = LightSample::new(&scene.lights, view.origin, &bounds, resolution, number, settings.seed);
+            let mut lights = LightSample::new(&scene.lights, view.origin, extent, resolution, number, settings.seed);
             if self.static_lights {
                 first_view_to_draw = lights.views.len() as u32;
             }
             let sky_views = self.input.sky_views();
             (self.uniform.sky_view, self.uniform.sky_view_count) = (lights.views.len() as u32, sky_views);
-            for view in 0..sky_views {
-                let direction = number.wrapping_mul(sky_views).wrapping_add(view);
-                lights.add_sky(sphere(r2(direction, settings.seed, 1)), &bounds, resolution);
+            let first = number.wrapping_mul(sky_views);
+            let sky = |view| sphere(r2(first.wrapping_add(view), settings.seed, 1));
+            (0..sky_views).for_each(|view| lights.add_sky(sky(view)));
+            if !extent.wide.is_empty() {
+                meshes.wide_sky_view = lights.views.len() as u32;
+                (0..sky_views).for_each(|view| lights.add_wide_sky(sky(view)));
+            }
+            if let Some(environment) = self.input.environment() {
+                let count = self.input.environment_suns();
+                for sun in 0..count {
+                    let uniform = r2(number.wrapping_mul(count).wrapping_add(sun), settings.seed, 2);
+                    lights.add_environment(environment, uniform, 1.0 / f64::from(count));
+                }
             }
             self.gpu.queue.write_buffer(&self.frame.lights, 0, bytemuck::cast_slice(&lights.lights));
             self.gpu.queue.write_buffer(&self.frame.views, 0, bytemuck::cast_slice(&lights.views));
+            self.gpu.queue.write_buffer(&self.frame.meshes, 0, bytemuck::bytes_of(&meshes));
             self.write_uniform();
             self.shadows(&lights.views[first_view_to_draw as usize..], first_view_to_draw);
             self.static_lights = !motion.is_moving() && !scene.lights.iter().any(lights::is_soft);
@@ -480,6 +562,13 @@ impl<'a> Recorder<'a> {
             self.fiber_segments += if index == 0 { fiber_segments } else { 0 };
         }
         Ok(())
+    }
+
+    /// What the passes of a sample know of all meshes.
+    fn meshes(&self) -> layout::Meshes {
+        let MeshPlaces { items, bounds, .. } = &self.mesh_places;
+        let clip_depth = if bounds.is_empty() { [0.0, 0.0] } else { self.moment.view.clip_depth(bounds) };
+        layout::Meshes { clip_depth, draw_count: items.len() as u32, wide_sky_view: NONE }
     }
 
     fn write_uniform(&self) {
@@ -505,8 +594,16 @@ impl<'a> Recorder<'a> {
         let mut encoder = self.encoder();
         let bytes = 4 * u64::from(self.frame.capacity.shadow_resolution).pow(2);
         encoder.clear_buffer(&self.frame.shadow_depths, bytes * u64::from(first), Some(bytes * u64::from(count)));
-        let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
-        self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count * parts));
+        if self.uniform.segment_count > 0 {
+            let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
+            self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count * parts));
+        }
+        if let Some(pipelines) = self.mesh_pipelines.filter(|_| !self.input.meshes.is_empty()) {
+            let numbers = views.iter().enumerate().map(|(i, view)| (first + i as u32, view.side as u32));
+            let (bindings, triangles) = (self.bindings(), self.input.meshes.triangle_count());
+            let targets = &self.frame.mesh_targets;
+            pipelines.record_shadows(self.gpu, &mut encoder, &bindings, targets, numbers, triangles);
+        }
         self.timer.resolve(&mut encoder);
         self.gpu.queue.submit([encoder.finish()]);
     }
@@ -532,6 +629,12 @@ impl<'a> Recorder<'a> {
         } else {
             encoder.clear_buffer(&self.frame.keys, 0, None);
         }
+        let has_meshes = !self.input.meshes.is_empty();
+        if let Some(pipelines) = self.mesh_pipelines.filter(|_| has_meshes) {
+            let (bindings, triangles) = (self.bindings(), self.input.meshes.triangle_count());
+            let (targets, size) = (&self.frame.mesh_targets, self.uniform.size);
+            pipelines.record_visibility(self.gpu, &mut encoder, &bindings, targets, size, triangles);
+        }
         encoder.clear_buffer(&self.frame.resolve_dispatch, 0, None);
         let film = if self.input.planes.count > 0 { Film::Aovs } else { Film::Plain };
         if film == Film::Aovs && self.uniform.first == 1 {
@@ -539,6 +642,9 @@ impl<'a> Recorder<'a> {
         }
         let (x, y) = fold((width * height).div_ceil(LANES));
         self.record(&mut encoder, Pass::Classify, |pass| pass.dispatch_workgroups(x, y, 1));
+        if has_meshes {
+            self.record(&mut encoder, Pass::ResolveMeshes(film), |pass| pass.dispatch_workgroups(x, y, 1));
+        }
         if self.uniform.segment_count > 0 {
             let arguments = &self.frame.resolve_dispatch;
             self.record(&mut encoder, Pass::SizeLists, |pass| pass.dispatch_workgroups(1, 1, 1));
@@ -590,9 +696,18 @@ impl<'a> Recorder<'a> {
         dispatch: impl FnOnce(&mut wgpu::ComputePass),
     ) {
         let (mut bindings, gpu, pipelines) = (self.bindings(), self.gpu, self.pipelines);
-        bindings.extend(bound.iter().copied());
+        bindings.extend(bound.iter().map(|(number, buffer)| (*number, buffer.as_entire_binding())));
         let timestamps = self.timer.begin(pass.entry_point());
         pipelines.record(gpu, encoder, pass, &bindings, timestamps, dispatch);
+    }
+
+    /// Object id and labels of a draw: meshes count on from the yarns.
+    fn labels(&self, draw: usize) -> (u32, &Labels) {
+        let Scene { objects, meshes, .. } = self.input.scene;
+        match objects.get(draw) {
+            Some(object) => (object.id, &object.labels),
+            None => (meshes[draw - objects.len()].id, &meshes[draw - objects.len()].labels),
+        }
     }
 
     /// Bytes of a buffer, copied through the staging buffer.
@@ -626,9 +741,14 @@ impl<'a> Recorder<'a> {
 
     /// Ids of all draws in the mattes: by object, by material.
     fn matte_ids(&self) -> [Vec<f32>; 2] {
-        let objects = &self.input.scene.objects;
+        let Scene { objects, meshes, .. } = self.input.scene;
         let id = |name: &str| cryptomatte::id(cryptomatte::hash(name));
-        [objects.iter().map(|o| id(&o.name)).collect(), objects.iter().map(|o| id(&o.labels.material)).collect()]
+        let objects = objects.iter().map(|o| (&o.name, &o.labels.material));
+        objects
+            .chain(meshes.iter().map(|m| (&m.name, &m.labels.material)))
+            .map(|(name, material)| (id(name), id(material)))
+            .unzip::<_, _, Vec<_>, Vec<_>>()
+            .into()
     }
 
     fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], image: &mut Image) -> Result<(), Error> {
@@ -662,8 +782,8 @@ impl<'a> Recorder<'a> {
                 image.depth[to] = normal[from][3];
                 image.normal[to] = direction(normal[from]);
                 image.tangent[to] = direction(tangent[from]);
-                let object = (tangent[from][3] as usize).checked_sub(1).map(|draw| &self.input.scene.objects[draw]);
-                image.object_id[to] = object.map_or(0, |object| object.id);
+                let object = (tangent[from][3] as usize).checked_sub(1).map(|draw| self.labels(draw));
+                image.object_id[to] = object.map_or(0, |(id, _)| id);
                 for (aov, values) in &mut image.aovs {
                     let matte = |ids: &[f32]| {
                         let found = planes.matte(from).map(|(draw, count)| (ids[draw as usize - 1], count));
@@ -680,10 +800,8 @@ impl<'a> Recorder<'a> {
                         Aov::Position => {}
                         Aov::Uv => value.copy_from_slice(&planes.values::<2>(planes.planes.uv, from)),
                         Aov::Vector => value.copy_from_slice(&planes.vector(from)),
-                        Aov::ObjectIndex => value[0] = object.map_or(0.0, |object| object.labels.index as f32),
-                        Aov::MaterialIndex => {
-                            value[0] = object.map_or(0.0, |object| object.labels.material_index as f32)
-                        }
+                        Aov::ObjectIndex => value[0] = object.map_or(0.0, |(_, labels)| labels.index as f32),
+                        Aov::MaterialIndex => value[0] = object.map_or(0.0, |(_, labels)| labels.material_index as f32),
                         Aov::CryptoObject => value.copy_from_slice(&matte(&ids[0])),
                         Aov::CryptoMaterial => value.copy_from_slice(&matte(&ids[1])),
                         Aov::Shadow => value[0] = planes.values::<1>(planes.planes.shadow, from)[0] * scale,

@@ -46,7 +46,7 @@ fn split(turns: f64) -> (u32, f32) {
 }
 
 /// A unit vector as the octahedral map in two 16-bit signed fractions.
-fn pack_unit_vector(v: [f32; 3]) -> u32 {
+pub fn pack_unit_vector(v: [f32; 3]) -> u32 {
     let v = Vec3::from(v);
     let v = v / (v.x.abs() + v.y.abs() + v.z.abs());
     let wrap = |a: f32, b: f32| (1.0 - b.abs()).copysign(a);

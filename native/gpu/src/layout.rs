@@ -9,6 +9,10 @@ pub const KNOT_BEGINS_SEGMENT: u32 = 0x10000;
 pub const LIGHT_SUN: u32 = 0;
 pub const LIGHT_POINT: u32 = 1;
 pub const LIGHT_AREA: u32 = 2;
+pub const NONE: u32 = u32::MAX;
+pub const MESH_SHADED: u32 = 0;
+pub const MESH_SHADOW_CATCHER: u32 = 1;
+pub const MESH_HOLDOUT: u32 = 2;
 
 /// Declares `repr(C)` structs together with a table of their members for the comparison with WGSL.
 macro_rules! shared {
@@ -178,7 +182,8 @@ shared! {
         axis: Vec3,
         shadow_view_count: u32,
         cone: [f32; 2],
-        padding: [f32; 2],
+        wide_view: u32,
+        wide_view_count: u32,
     }
     ShadowView {
         texel_from_render: Mat4,
@@ -186,5 +191,33 @@ shared! {
         depth_scale: f32,
         texels_per_unit: f32,
         near: f32,
+        side: f32,
+        padding_0: f32,
+        padding_1: f32,
+        padding_2: f32,
+    }
+    Meshes {
+        clip_depth: [f32; 2],
+        draw_count: u32,
+        wide_sky_view: u32,
+    }
+    MeshDraw {
+        render_from_object_x: Vec4,
+        render_from_object_y: Vec4,
+        render_from_object_z: Vec4,
+        color: Vec3,
+        kind: u32,
+        first_triangle: u32,
+        first_corner: u32,
+        first_position: u32,
+        first_normal: u32,
+    }
+    Sky {
+        environment_from_render_x: Vec4,
+        environment_from_render_y: Vec4,
+        environment_from_render_z: Vec4,
+        size: [u32; 2],
+        strength: f32,
+        padding: f32,
     }
 }

@@ -3,12 +3,15 @@
 mod aov;
 pub mod cryptomatte;
 mod device;
+mod environment;
 mod error;
 mod frame;
 mod image;
 mod knots;
 mod layout;
 mod lights;
+mod mesh_raster;
+mod meshes;
 mod motion;
 mod pipelines;
 mod renderer;
@@ -22,7 +25,9 @@ pub use aov::Aov;
 pub use device::{AdapterInfo, adapters};
 pub use error::Error;
 pub use image::{Image, Statistics};
-pub use lisle_core::scene::{Camera, Cone, Labels, Lens, Light, Object, Scene, Shading};
+pub use lisle_core::scene::{
+    Camera, Cone, Environment, EnvironmentImage, Labels, Lens, Light, Mesh, MeshKind, Object, Scene, Shading, Triangles,
+};
 pub use motion::Exposure;
 pub use renderer::{Progress, Renderer};
 pub use scene::*;

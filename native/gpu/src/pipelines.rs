@@ -19,8 +19,23 @@ pub(crate) struct Pipelines {
     pub stores: Vec<Store>,
 }
 
-/// Buffers by binding number.
-pub(crate) type Bindings<'a> = HashMap<u32, &'a wgpu::Buffer>;
+/// Buffers and textures by binding number.
+pub(crate) type Bindings<'a> = HashMap<u32, wgpu::BindingResource<'a>>;
+
+/// The group of those that a pass uses.
+pub(crate) fn bind_group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    used: &[u32],
+    bindings: &Bindings,
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = used
+        .iter()
+        .map(|binding| wgpu::BindGroupEntry { binding: *binding, resource: bindings[binding].clone() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
 
 impl Pipelines {
     /// `wide`: one pass with 64-bit atomics, else two with 32-bit ones.
@@ -64,15 +79,7 @@ impl Pipelines {
     ) {
         let found = self.get(pass);
         let Pipeline { pipeline, bindings: used } = &*found;
-        let entries: Vec<_> = used
-            .iter()
-            .map(|binding| wgpu::BindGroupEntry { binding: *binding, resource: bindings[binding].as_entire_binding() })
-            .collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(pass.entry_point()),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let group = bind_group(gpu, pass.entry_point(), &pipeline.get_bind_group_layout(0), used, bindings);
         let mut compute = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
             label: Some(pass.entry_point()),
             timestamp_writes: timestamps,

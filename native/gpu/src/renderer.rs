@@ -8,7 +8,10 @@ use lisle_precompute::TransportStore;
 
 use crate::aov::{NO_PLANE, Planes};
 use crate::device::Gpu;
+use crate::environment::SkyBuffers;
 use crate::frame::{FrameBuffers, FrameInput, Recorder};
+use crate::mesh_raster::MeshPipelines;
+use crate::meshes::MeshBuffers;
 use crate::motion::{Motion, Neighbour};
 use crate::pipelines::Pipelines;
 use crate::shader::{Film, Pass};
@@ -46,6 +49,10 @@ pub struct Renderer {
 struct State {
     tables: TableCache,
     scene: Option<SceneBuffers>,
+    sky: Option<SkyBuffers>,
+    meshes: Option<MeshBuffers>,
+    /// Made for the first scene that has meshes.
+    mesh_pipelines: Option<MeshPipelines>,
     frame: Option<FrameBuffers>,
 }
 
@@ -125,7 +132,8 @@ impl Renderer {
         }
         let planes = Planes::new(&settings.aovs);
         let mut state = self.lock();
-        let State { tables, scene: kept_scene, frame: kept_frame } = &mut *state;
+        let State { tables, scene: kept_scene, sky: kept_sky, meshes: kept_meshes, mesh_pipelines, frame: kept_frame } =
+            &mut *state;
         let transports = match settings.photons() {
             0 => Vec::new(),
             photons => {
@@ -136,6 +144,11 @@ impl Renderer {
             }
         };
         let (mut buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, &transports, tables)?;
+        let sky = SkyBuffers::update(&self.gpu, kept_sky.take(), scene.environment.as_ref())?;
+        let meshes = MeshBuffers::update(&self.gpu, kept_meshes.take(), scene)?;
+        if mesh_pipelines.is_none() && !meshes.is_empty() {
+            *mesh_pipelines = Some(MeshPipelines::new(&self.gpu)?);
+        }
         let motion = Motion::new(&self.gpu, exposure.steps, &which, settings.size, &buffers)?;
         let neighbours = exposure.neighbours.filter(|_| planes.vector != NO_PLANE).map(|[before, after]| {
             let neighbour =
@@ -144,23 +157,36 @@ impl Renderer {
         });
         let neighbours = neighbours.transpose()?;
         let moment = motion.at(&buffers, 0.5)?;
+        let film = if planes.count > 0 { Film::Aovs } else { Film::Plain };
         let wanted = [
             (planes.count > 0, Pass::ResolveFibers(Film::Aovs)),
             (planes.count > 0, Pass::ResolveCores(Film::Aovs)),
+            (!meshes.is_empty(), Pass::ResolveMeshes(film)),
             (neighbours.is_some(), Pass::Follow),
             (!motion.shapes.is_empty(), Pass::MoveKnots),
         ];
         let wanted: Vec<Pass> = wanted.into_iter().filter_map(|(is, pass)| is.then_some(pass)).collect();
         self.pipelines.ensure(&self.gpu, &wanted)?;
         let neighbours = neighbours.as_ref();
-        let input = FrameInput { scene, settings, planes, buffers: &buffers, motion: &motion, neighbours };
+        let input = FrameInput {
+            scene,
+            settings,
+            planes,
+            buffers: &buffers,
+            motion: &motion,
+            neighbours,
+            sky: &sky,
+            meshes: &meshes,
+        };
         let frame = FrameBuffers::fit(&self.gpu, kept_frame.take(), &input, &moment.draws, region)?;
-        let mut recorder = Recorder::new(&self.gpu, &self.pipelines, &input, &frame, moment)?;
+        let mut recorder = Recorder::new(&self.gpu, &self.pipelines, mesh_pipelines.as_ref(), &input, &frame, moment)?;
         let image = recorder.picture(region, progress);
         drop(recorder);
         buffers.displaced = !motion.shapes.is_empty();
         drop(motion);
         *kept_scene = Some(buffers);
+        *kept_sky = Some(sky);
+        *kept_meshes = Some(meshes);
         *kept_frame = Some(frame);
         image
     }

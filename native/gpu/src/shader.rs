@@ -39,6 +39,9 @@ const SHADING: Files = files![
     "passes/shade.wgsl",
 ];
 
+const KEYS: Files = files!["passes/key.wgsl", "passes/film.wgsl", "passes/background.wgsl", "passes/mesh_target.wgsl"];
+const MESHES: Files = files!["passes/meshes.wgsl"];
+
 /// How visibility keys reach memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Store {
@@ -71,13 +74,21 @@ pub enum Pass {
     SizeLists,
     ResolveFibers(Film),
     ResolveCores(Film),
+    ResolveMeshes(Film),
     Follow,
     MoveKnots,
 }
 
+/// A pass of the hardware's rasteriser.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Raster {
+    Visibility,
+    Shadow,
+}
+
 impl Pass {
     #[cfg(test)]
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 19] = [
         Self::Cull,
         Self::Scan,
         Self::Fibers(Store::Wide),
@@ -91,8 +102,10 @@ impl Pass {
         Self::SizeLists,
         Self::ResolveFibers(Film::Plain),
         Self::ResolveCores(Film::Plain),
+        Self::ResolveMeshes(Film::Plain),
         Self::ResolveFibers(Film::Aovs),
         Self::ResolveCores(Film::Aovs),
+        Self::ResolveMeshes(Film::Aovs),
         Self::Follow,
         Self::MoveKnots,
     ];
@@ -108,6 +121,7 @@ impl Pass {
             Self::SizeLists => "size_lists",
             Self::ResolveFibers(_) => "resolve_fibers",
             Self::ResolveCores(_) => "resolve_cores",
+            Self::ResolveMeshes(_) => "resolve_meshes",
             Self::Follow => "follow",
             Self::MoveKnots => "move_knots",
         }
@@ -130,16 +144,26 @@ impl Pass {
             Self::Fibers(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_fibers.wgsl"]],
             Self::Cores(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_cores.wgsl"]],
             Self::Shadow => vec![SCENE, files!["math/capsule.wgsl", "passes/work.wgsl", "passes/shadow.wgsl"]],
-            Self::Classify => vec![SCENE, WORK, files!["passes/key.wgsl", "passes/film.wgsl", "passes/classify.wgsl"]],
+            Self::Classify => vec![SCENE, WORK, KEYS, files!["passes/classify.wgsl"]],
             Self::SizeLists => vec![SCENE, WORK, files!["passes/film.wgsl", "passes/size_lists.wgsl"]],
             Self::ResolveFibers(f) => {
                 vec![SCENE, WORK, RASTER, SHADING, film(f), files!["passes/resolve_fibers.wgsl"]]
             }
             Self::ResolveCores(f) => vec![SCENE, WORK, RASTER, SHADING, film(f), files!["passes/resolve_cores.wgsl"]],
+            Self::ResolveMeshes(f) => vec![
+                SCENE,
+                WORK,
+                RASTER,
+                SHADING,
+                film(f),
+                files!["passes/background.wgsl", "passes/mesh_target.wgsl"],
+                MESHES,
+                files!["passes/resolve_meshes.wgsl"],
+            ],
             Self::Follow => vec![SCENE, WORK, files!["passes/follow.wgsl"]],
             Self::MoveKnots => vec![files!["math/pack.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"]],
         };
-        parts.iter().flat_map(|files| files.iter()).map(|(_, text)| *text).collect::<Vec<_>>().join("\n")
+        joined(&parts)
     }
 
     fn needs_wide_atomics(self) -> bool {
@@ -148,36 +172,76 @@ impl Pass {
 
     /// Parsed and validated; the bindings that the entry point uses.
     pub fn reflect(self) -> Result<Reflection, String> {
-        let source = self.source();
-        let module = naga::front::wgsl::parse_str(&source).map_err(|e| e.emit_to_string(&source))?;
-        let mut capabilities = naga::valid::Capabilities::default();
-        if self.needs_wide_atomics() {
-            capabilities |=
-                naga::valid::Capabilities::SHADER_INT64 | naga::valid::Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
-        }
-        let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
-            .validate(&module)
-            .map_err(|e| e.emit_to_string(&source))?;
-        let entry = info.get_entry_point(0);
-        let bindings = module
-            .global_variables
-            .iter()
-            .filter(|(handle, _)| !entry[*handle].is_empty())
-            .filter_map(|(_, variable)| variable.binding.map(|b| b.binding))
-            .collect();
-        Ok(Reflection {
-            #[cfg(test)]
-            module,
-            bindings,
-        })
+        reflect(&self.source(), self.needs_wide_atomics())
     }
+}
+
+impl Raster {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Visibility => "visibility_meshes",
+            Self::Shadow => "shadow_meshes",
+        }
+    }
+
+    /// Of the vertices, and of the fragments.
+    pub fn entry_points(self) -> [&'static str; 2] {
+        match self {
+            Self::Visibility => ["mesh_vertex", "mesh_fragment"],
+            Self::Shadow => ["mesh_shadow_vertex", "mesh_shadow_fragment"],
+        }
+    }
+
+    /// The pass's files in one piece.
+    pub fn source(self) -> String {
+        let own = match self {
+            Self::Visibility => files!["passes/visibility_meshes.wgsl"],
+            Self::Shadow => files!["passes/shadow_meshes.wgsl"],
+        };
+        joined(&[SCENE, MESHES, own])
+    }
+
+    /// Parsed and validated; the bindings that either entry point uses.
+    pub fn bindings(self) -> Result<Vec<u32>, String> {
+        reflect(&self.source(), false).map(|reflection| reflection.bindings)
+    }
+}
+
+fn joined(parts: &[Files]) -> String {
+    parts.iter().flat_map(|files| files.iter()).map(|(_, text)| *text).collect::<Vec<_>>().join("\n")
+}
+
+fn reflect(source: &str, wide_atomics: bool) -> Result<Reflection, String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|e| e.emit_to_string(source))?;
+    let mut capabilities = naga::valid::Capabilities::default() | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    if wide_atomics {
+        capabilities |=
+            naga::valid::Capabilities::SHADER_INT64 | naga::valid::Capabilities::SHADER_INT64_ATOMIC_MIN_MAX;
+    }
+    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .map_err(|e| e.emit_to_string(source))?;
+    let is_used = |variable: naga::Handle<naga::GlobalVariable>| {
+        (0..module.entry_points.len()).any(|i| !info.get_entry_point(i)[variable].is_empty())
+    };
+    let bindings = module
+        .global_variables
+        .iter()
+        .filter(|(handle, _)| is_used(*handle))
+        .filter_map(|(_, variable)| variable.binding.map(|b| b.binding))
+        .collect();
+    Ok(Reflection {
+        #[cfg(test)]
+        module,
+        bindings,
+    })
 }
 
 /// What naga finds in a pass.
 pub struct Reflection {
     #[cfg(test)]
     pub module: naga::Module,
-    /// Binding numbers of group 0 that the entry point uses.
+    /// Binding numbers of group 0 that its entry points use.
     pub bindings: Vec<u32>,
 }
 
@@ -191,6 +255,11 @@ mod tests {
         for pass in Pass::ALL {
             if let Err(message) = pass.reflect() {
                 panic!("{pass:?}:\n{message}");
+            }
+        }
+        for raster in [Raster::Visibility, Raster::Shadow] {
+            if let Err(message) = raster.bindings() {
+                panic!("{raster:?}:\n{message}");
             }
         }
     }

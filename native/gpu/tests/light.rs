@@ -10,45 +10,16 @@ use lisle_core::scattering::{
     FiberAngles, Material, Normalizers, ScatteringTables, physical_ambient, physical_reflected, simple_ambient,
     simple_reflected,
 };
-use lisle_core::yarn::Yarn;
 use lisle_gpu::{Camera, Cone, Image, Light, Object, Occlusion, Scene, Settings, Shading};
 use lisle_precompute::{SectionDensity, SelfShadow};
-use support::{
-    curves, draw, exact, looking, measure, object, orthographic, picture, preset, scene, twin, without_flyaways,
-    yarns_of,
-};
+use support::fiber::{close_up, lone_fiber, straight_fiber};
+use support::{curves, draw, exact, looking, measure, object, orthographic, picture, preset, scene, yarns_of};
 
 const SIZE: [u32; 2] = [64, 48];
 
 /// Point samples with shadow maps of fine texels.
 fn sharp(size: [u32; 2]) -> Settings {
     Settings { shadow_resolution: 512, ..exact(size) }
-}
-
-/// One straight fiber, so thin against its yarn that its own shadow and occlusion are within a thousandth of none; its yarn is one
-/// segment.
-fn lone_fiber(material: Material) -> Object {
-    straight_fiber(material, 2)
-}
-
-/// The same on a yarn of so many knots.
-fn straight_fiber(material: Material, knots: usize) -> Object {
-    let yarn = Yarn {
-        plies: 1,
-        fibers_per_ply: 1,
-        r_min: 1.0,
-        fiber_twist: 1e4,
-        ply_twist: 1e4,
-        fiber_radius: 5e-4 * preset("silk-1").ellipse_long,
-        ..without_flyaways(preset("silk-1"))
-    };
-    Object { material: Arc::new(material), ..object(&yarns_of(curves::straight(2.0, knots), false, 0.2), &yarn) }
-}
-
-/// Close-up of the fiber from a direction: it is 40 pixels wide.
-fn close_up(object: &Object, from: DVec3) -> Camera {
-    let target = twin::fiber_position(object, object.yarns.points().len() / 2 - 1, 0.5);
-    orthographic(looking(target + from.normalize(), target), 48.0 / 20.0 * 0.2 * 5e-4, SIZE, [0.0, 0.0])
 }
 
 fn dark(object: Object, camera: Camera) -> Scene {
@@ -112,7 +83,7 @@ fn a_lone_fiber_scatters_a_ring_of_suns_as_the_formulas_say() {
                     let theta = [0.0, -view.normalize().x.asin(), 0.7][k / 8];
                     let phi = TAU * (k % 8) as f64 / 8.0 + 0.2;
                     let toward = DVec3::new(theta.sin(), theta.cos() * phi.cos(), theta.cos() * phi.sin());
-                    let mut scene = dark(fiber.clone(), close_up(&fiber, view));
+                    let mut scene = dark(fiber.clone(), close_up(&fiber, view, SIZE));
                     scene.lights = vec![sun_from(toward)];
                     let image = draw(&scene, &Settings { shading, ..sharp(SIZE) });
                     assert_eq!(measure::not_finite(&image), 0);
@@ -139,7 +110,7 @@ fn a_yarns_own_tube_takes_no_light_from_any_side() {
         let mut least = 1.0_f64;
         for phi in [0.2, 1.7, 3.0, 4.5_f64] {
             let toward = DVec3::new(theta.sin(), theta.cos() * phi.cos(), theta.cos() * phi.sin());
-            let mut scene = dark(fiber.clone(), close_up(&fiber, view));
+            let mut scene = dark(fiber.clone(), close_up(&fiber, view, SIZE));
             scene.lights = vec![sun_from(toward)];
             let [_, (shading, formula)] = formulas(&material);
             let image = draw(&scene, &Settings { shading, ..sharp(SIZE) });
@@ -163,7 +134,7 @@ fn the_formulas_of_another_light_are_rejected() {
     let fiber = lone_fiber(material);
     let view = DVec3::from(VIEWS[1]);
     let toward = DVec3::new(0.1, -0.6, 0.8).normalize();
-    let mut scene = dark(fiber.clone(), close_up(&fiber, view));
+    let mut scene = dark(fiber.clone(), close_up(&fiber, view, SIZE));
     scene.lights = vec![sun_from(toward)];
     for (shading, formula) in formulas(&material) {
         let image = draw(&scene, &Settings { shading, ..sharp(SIZE) });
@@ -185,7 +156,7 @@ fn in_a_furnace_a_lone_fiber_gives_back_its_ambient_colour() {
                 (Shading::Physical, Occlusion::Distance),
                 (Shading::Physical, Occlusion::Table),
             ] {
-                let scene = scene(vec![fiber.clone()], close_up(&fiber, view));
+                let scene = scene(vec![fiber.clone()], close_up(&fiber, view, SIZE));
                 let image = draw(&scene, &Settings { shading, occlusion, ..sharp(SIZE) });
                 let expected = |angles: &FiberAngles, _: DVec3, _: DVec3| match shading {
                     Shading::Simple => simple_ambient(&material, angles.sin_theta_o),

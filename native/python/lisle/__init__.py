@@ -11,13 +11,15 @@ Lengths are metres (or the file's unit, where it has none), right-handed, Z up; 
 
 from ._native import Adapter, Yarns, __version__, adapters
 from .camera import Camera
+from .environment import Environment
 from .errors import Cancelled, DeviceError, Error, InputError
 from .fabric import MeshKnit, knit_on_mesh, knit_sleeve, knit_swatch, knit_tube, sweater, woven_swatch
 from .image import FURTHER_PASSES, Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
 from .material import Material
-from .reference import Environment, Fibers, Reference, fibers
+from .mesh import Mesh
+from .reference import Fibers, Reference, fibers
 from .renderer import Renderer
 from .scene import Object, Scene
 from .yarn import Yarn
@@ -36,6 +38,7 @@ __all__ = [
     "InputError",
     "Light",
     "Material",
+    "Mesh",
     "MeshKnit",
     "Object",
     "Point",

@@ -6,15 +6,18 @@ import numpy as np
 import numpy.typing as npt
 
 from .camera import Camera
+from .environment import Environment
 from .lights import Light
 from .material import Material
-from .reference import Environment
+from .mesh import Mesh
 from .scene import Object
 from .yarn import Yarn
 
 __all__ = [
     "Adapter",
+    "EnvironmentImage",
     "Renderer",
+    "Triangles",
     "Yarns",
     "__version__",
     "adapters",
@@ -27,6 +30,7 @@ __all__ = [
     "knit_sleeve",
     "knit_tube",
     "load",
+    "load_image",
     "material_preset",
     "material_presets",
     "reference",
@@ -139,6 +143,27 @@ class Yarns:
     def __len__(self) -> int: ...
 
 @final
+class Triangles:
+    """A surface, object space."""
+
+    def __new__(
+        cls,
+        positions: npt.NDArray[np.float32],
+        triangles: npt.NDArray[np.uint32],
+        normals: npt.NDArray[np.float32] | None,
+    ) -> Triangles: ...
+    def __len__(self) -> int: ...
+
+@final
+class EnvironmentImage:
+    """A picture of the sky with what finds its bright parts."""
+
+    def __new__(cls, radiance: npt.NDArray[np.float32]) -> EnvironmentImage: ...
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+
+@final
 class Renderer:
     def __new__(cls, adapter: str | None) -> Renderer: ...
     @property
@@ -146,8 +171,10 @@ class Renderer:
     def render(
         self,
         objects: Sequence[Object],
+        meshes: Sequence[tuple[Mesh, int]],
         lights: Sequence[Light],
         ambient: tuple[float, float, float],
+        environment: Environment | None,
         camera: Camera,
         later: Sequence[tuple[Sequence[Object], Camera]],
         neighbours: Sequence[tuple[Sequence[Object], Camera]],
@@ -165,6 +192,7 @@ def fibers(
 ) -> list[npt.NDArray[Any]]: ...
 def reference(
     objects: Sequence[Object],
+    meshes: Sequence[tuple[Mesh, int]],
     lights: Sequence[Light],
     ambient: tuple[float, float, float],
     environment: Environment | None,
@@ -174,6 +202,7 @@ def reference(
     progress: Callable[[float], bool | None] | None,
 ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]: ...
 def load(path: Path, yarn_radius: float | None) -> Yarns: ...
+def load_image(path: Path) -> npt.NDArray[np.float32]: ...
 def save_png(path: Path, combined: npt.NDArray[np.float32], bits: int) -> None: ...
 def save_exr(
     path: Path, passes: Sequence[tuple[Sequence[str], npt.NDArray[Any]]], metadata: Mapping[str, str]

@@ -1,7 +1,6 @@
 """The reference: every fiber explicit, and light scattered between them as often as it likes."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,10 +12,12 @@ from . import _native
 from ._arguments import Vector
 from ._native import Yarns
 from .camera import Camera
+from .environment import Environment
 from .errors import InputError
 from .image import Image
 from .lights import Light
 from .material import Material
+from .mesh import Mesh
 from .renderer import Progress
 from .scene import DEFAULT_YARN, Scene, scene_of
 from .yarn import Yarn
@@ -80,32 +81,6 @@ def fibers(
     return Fibers(*_native.fibers(yarns, yarn, chord_error, object_id, view, progress))
 
 
-@dataclass(frozen=True, eq=False)
-class Environment:
-    """Light from all sides, as a picture of the sky in equal steps of longitude and latitude, as Blender has it.
-
-    The direction (x, y, z) lies at ½ − atan2(y, x) / 2π of the width from the left, and asin z / π + ½ of the height
-    from the bottom.
-
-    Args:
-        radiance: (h, w, 3), scene-linear, row 0 at the top.
-        world_from_environment: 3×3, a rotation.
-    """
-
-    radiance: npt.NDArray[np.float32]
-    world_from_environment: npt.NDArray[np.float64] = field(default_factory=lambda: np.eye(3))
-
-    def __post_init__(self) -> None:
-        radiance = np.ascontiguousarray(self.radiance, np.float32)
-        if radiance.ndim != 3 or radiance.shape[2] != 3:
-            raise InputError(f"Environment.radiance: expected shape (h, w, 3), got {radiance.shape}")
-        matrix = np.ascontiguousarray(self.world_from_environment, np.float64)
-        if matrix.shape != (3, 3):
-            raise InputError(f"Environment.world_from_environment: expected a 3×3 matrix, got shape {matrix.shape}")
-        object.__setattr__(self, "radiance", radiance)
-        object.__setattr__(self, "world_from_environment", matrix)
-
-
 class Reference:
     """A path tracer through explicit fibers: slow, and right.
 
@@ -125,6 +100,7 @@ class Reference:
         lights: Iterable[Light] | None = None,
         ambient: Vector | None = None,
         environment: Environment | None = None,
+        meshes: Iterable[Mesh] | None = None,
         samples: int = 64,
         size: tuple[int, int] | None = None,
         shading: str = "physical",
@@ -142,13 +118,14 @@ class Reference:
         The same arguments give the same bits on any number of cores.
 
         Args:
-            what: yarns, with the next five arguments; or a scene, which has them already.
+            what: yarns, with the next seven arguments; or a scene, which has them already.
             yarn: the procedural yarn; "cotton-1" unless given.
             material: how its fibers scatter; "cotton" unless given.
             camera: viewpoint; `Camera.fit(yarns)` unless given.
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
             environment: light from all sides, which is added to `ambient`.
+            meshes: surfaces that hide yarn, throw shadows on it and take its own.
             samples: independent paths per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
@@ -167,15 +144,14 @@ class Reference:
             OSError: the checkpoint cannot be read or written.
             Cancelled: `progress` returned False. What `progress` raises comes through as it is.
         """
-        scene = scene_of(what, yarn, material, camera, lights, ambient)
-        if not isinstance(environment, Environment | None):
-            raise InputError(f"environment: expected a lisle.Environment, got {type(environment).__name__}")
+        scene = scene_of(what, yarn, material, camera, lights, ambient, environment, meshes)
         size = arguments.pixels("size", scene.camera.size if size is None else size)
         passes, statistics = _native.reference(
             scene.objects,
+            scene.numbered_meshes(),
             scene.lights,
             scene.ambient,
-            environment,
+            scene.environment,
             scene.camera,
             {
                 "size": size,

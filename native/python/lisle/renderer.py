@@ -7,10 +7,12 @@ from . import _native
 from ._arguments import Vector
 from ._native import Adapter, Yarns
 from .camera import Camera
+from .environment import Environment
 from .errors import InputError
 from .image import FURTHER_PASSES, Image, manifests
 from .lights import Light
 from .material import Material
+from .mesh import Mesh
 from .scene import Scene, moved, scenes_of
 from .yarn import Yarn
 
@@ -48,6 +50,8 @@ class Renderer:
         camera: Camera | Sequence[Camera] | None = None,
         lights: Iterable[Light] | None = None,
         ambient: Vector | None = None,
+        environment: Environment | None = None,
+        meshes: Iterable[Mesh] | None = None,
         samples: int = 16,
         size: tuple[int, int] | None = None,
         shading: str = "physical",
@@ -73,12 +77,14 @@ class Renderer:
         of that time.
 
         Args:
-            what: yarns, with the next five arguments; or a scene, which has them already; or a list, see above.
+            what: yarns, with the next seven arguments; or a scene, which has them already; or a list, see above.
             yarn: the procedural yarn; "cotton-1" unless given.
             material: how its fibers scatter; "cotton" unless given.
             camera: viewpoint, or one for each time step; `Camera.fit(yarns)` of the first unless given.
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
+            environment: radiance from everywhere, which is added to `ambient`; each sample takes a few directions.
+            meshes: surfaces that hide yarn, throw shadows on it and take its own.
             samples: jittered samples per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
@@ -86,7 +92,7 @@ class Renderer:
                 material, with physical shading; 0 leaves it out.
             occlusion: "distance" (cubic in the distance from the yarn's centre) or "table".
             region: part of the frame to draw, x0, y0, x1, y1 in pixels from the bottom left, x1 and y1 exclusive.
-            transparent: leaves the background transparent; otherwise it is the ambient radiance.
+            transparent: leaves the background transparent; otherwise it is that of ambient and environment.
             lod_pixels: fibers thinner than this are merged; 0 draws every fiber.
             filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
             shadow_resolution: texels along one side of a shadow map, 16 to 16384.
@@ -102,7 +108,7 @@ class Renderer:
             DeviceError: the adapter failed.
             Cancelled: `progress` returned False. What `progress` raises comes through as it is.
         """
-        steps = scenes_of(what, yarn, material, camera, lights, ambient)
+        steps = scenes_of(what, yarn, material, camera, lights, ambient, environment, meshes)
         scene = steps[0]
         if (before is None) != (after is None):
             raise InputError("before, after: expected both or neither")
@@ -114,8 +120,10 @@ class Renderer:
         size = arguments.pixels("size", scene.camera.size if size is None else size)
         drawn, statistics = self._native.render(
             scene.objects,
+            scene.numbered_meshes(),
             scene.lights,
             scene.ambient,
+            scene.environment,
             scene.camera,
             [(step.objects, step.camera) for step in steps[1:]],
             [(other.objects, other.camera) for other in neighbours],

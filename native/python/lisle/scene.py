@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from typing import TypeVar
 
 import numpy as np
@@ -11,9 +12,11 @@ from . import _arguments as arguments
 from ._arguments import Triple, Vector
 from ._native import Yarns
 from .camera import Camera
+from .environment import Environment
 from .errors import InputError
 from .lights import Area, Light, Point, Spot, Sun
 from .material import Material
+from .mesh import Mesh
 from .yarn import Yarn
 
 T = TypeVar("T")
@@ -44,13 +47,24 @@ class Scene:
         camera: viewpoint.
         lights: any number of lights.
         ambient: constant radiance from everywhere, scene-linear.
+        environment: radiance from everywhere, which is added to that.
+        meshes: surfaces that hide yarn, throw shadows on it and take its own.
     """
 
     camera: Camera
     lights: tuple[Light, ...]
     ambient: Triple
+    environment: Environment | None
+    meshes: tuple[Mesh, ...]
 
-    def __init__(self, camera: Camera, lights: Iterable[Light] = (), ambient: Vector = (0.0, 0.0, 0.0)) -> None:
+    def __init__(
+        self,
+        camera: Camera,
+        lights: Iterable[Light] = (),
+        ambient: Vector = (0.0, 0.0, 0.0),
+        environment: Environment | None = None,
+        meshes: Iterable[Mesh] = (),
+    ) -> None:
         if not isinstance(camera, Camera):
             raise InputError(f"camera: expected a lisle.Camera, got {type(camera).__name__}")
         self.camera = camera
@@ -59,12 +73,26 @@ class Scene:
             if not isinstance(light, (Sun, Point, Spot, Area)):
                 raise InputError(f"light {index}: expected a Sun, Point, Spot or Area, got {type(light).__name__}")
         self.ambient = arguments.triple("ambient", ambient)
+        if not isinstance(environment, Environment | None):
+            raise InputError(f"environment: expected a lisle.Environment, got {type(environment).__name__}")
+        self.environment = environment
+        self.meshes = tuple(meshes)
+        for index, mesh in enumerate(self.meshes):
+            if not isinstance(mesh, Mesh):
+                raise InputError(f"mesh {index}: expected a lisle.Mesh, got {type(mesh).__name__}")
         self._objects: list[Object] = []
 
     @property
     def objects(self) -> tuple[Object, ...]:
         """What has been added."""
         return tuple(self._objects)
+
+    def numbered_meshes(self) -> list[tuple[Mesh, int]]:
+        """Each mesh with its number in the object-id pass: its own, or the next after those of yarns and other meshes."""
+        taken = [added.object_id for added in self._objects]
+        taken += [mesh.object_id for mesh in self.meshes if mesh.object_id is not None]
+        free = count(max(taken, default=0) + 1)
+        return [(mesh, next(free) if mesh.object_id is None else mesh.object_id) for mesh in self.meshes]
 
     def add(
         self,
@@ -120,17 +148,29 @@ def scene_of(
     camera: Camera | None,
     lights: Iterable[Light] | None,
     ambient: Vector | None,
+    environment: Environment | None,
+    meshes: Iterable[Mesh] | None,
 ) -> Scene:
     """What is to be drawn: a scene as it is, or yarns with the rest or its defaults."""
     if isinstance(what, Scene):
-        given = {"yarn": yarn, "material": material, "camera": camera, "lights": lights, "ambient": ambient}
+        given = {
+            "yarn": yarn,
+            "material": material,
+            "camera": camera,
+            "lights": lights,
+            "ambient": ambient,
+            "environment": environment,
+            "meshes": meshes,
+        }
         for name, value in given.items():
             if value is not None:
                 raise InputError(f"{name}: the scene has its own")
         return what
     if not isinstance(what, Yarns):
         raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
-    scene = Scene(camera or Camera.fit(what), lights or (), (0.0, 0.0, 0.0) if ambient is None else ambient)
+    scene = Scene(
+        camera or Camera.fit(what), lights or (), (0.0, 0.0, 0.0) if ambient is None else ambient, environment, meshes or ()
+    )
     scene.add(what, yarn, material)
     return scene
 
@@ -142,19 +182,21 @@ def scenes_of(
     camera: Camera | Sequence[Camera] | None,
     lights: Iterable[Light] | None,
     ambient: Vector | None,
+    environment: Environment | None,
+    meshes: Iterable[Mesh] | None,
 ) -> list[Scene]:
     """The same at several times: lists of scenes, yarns or cameras, of one length; what is no list counts for all."""
     if not isinstance(what, (Yarns, Scene, Sequence)) or (isinstance(what, Sequence) and not what):
         raise InputError(f"expected lisle.Yarns, a lisle.Scene or a list of either, got {type(what).__name__}")
     shapes: list[Yarns | Scene] = [what] if isinstance(what, (Yarns, Scene)) else list(what)
     cameras = [camera] if camera is None or isinstance(camera, Camera) else list(camera)
-    count = max(len(shapes), len(cameras))
+    times = max(len(shapes), len(cameras))
     for name, items in (("time steps", shapes), ("cameras", cameras)):
-        if len(items) not in (1, count):
-            raise InputError(f"{name}: there are {len(items)}, expected {count}, as many as of the others")
-    first = scene_of(shapes[0], yarn, material, cameras[0], lights, ambient)
+        if len(items) not in (1, times):
+            raise InputError(f"{name}: there are {len(items)}, expected {times}, as many as of the others")
+    first = scene_of(shapes[0], yarn, material, cameras[0], lights, ambient, environment, meshes)
     scenes = [first]
-    for step in range(1, count):
+    for step in range(1, times):
         shape, seen_from = shapes[step % len(shapes)], cameras[step % len(cameras)]
         scenes.append(moved(first, shape, seen_from))
     return scenes
@@ -170,7 +212,7 @@ def moved(scene: Scene, what: Yarns | Scene, camera: Camera | None = None) -> Sc
         raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
     if len(scene.objects) != 1:
         raise InputError("yarns in another shape stand for a scene of one object")
-    other = Scene(camera or scene.camera, scene.lights, scene.ambient)
+    other = Scene(camera or scene.camera, scene.lights, scene.ambient, scene.environment, scene.meshes)
     other._objects.append(replace(scene.objects[0], yarns=what))
     return other
 

@@ -67,7 +67,13 @@ macro_rules! input_errors {
     };
 }
 
-input_errors!(lisle_core::Error, lisle_core::yarn::YarnError, lisle_fabric::Error, lisle_formats::Error,);
+input_errors!(
+    lisle_core::Error,
+    lisle_core::scene::SceneError,
+    lisle_core::yarn::YarnError,
+    lisle_fabric::Error,
+    lisle_formats::Error,
+);
 
 impl From<lisle_gpu::Error> for Failure {
     fn from(error: lisle_gpu::Error) -> Self {

@@ -3,12 +3,14 @@
 
 mod adapter;
 mod convert;
+mod environment;
 mod error;
 mod exr;
 mod fabric;
 mod gil;
 mod load;
 mod material;
+mod mesh;
 mod png;
 mod reference;
 mod renderer;
@@ -29,6 +31,8 @@ mod native {
     #[pymodule_export]
     use super::adapter::{Adapter, adapters};
     #[pymodule_export]
+    use super::environment::{EnvironmentImage, load_image};
+    #[pymodule_export]
     use super::exr::{cryptomatte_hash, save_exr};
     #[pymodule_export]
     use super::fabric::{knit_flat, knit_mesh, knit_sleeve, knit_tube, sweater, woven_flat};
@@ -36,6 +40,8 @@ mod native {
     use super::load::load;
     #[pymodule_export]
     use super::material::{check_material, material_preset, material_presets};
+    #[pymodule_export]
+    use super::mesh::Triangles;
     #[pymodule_export]
     use super::png::save_png;
     #[pymodule_export]

@@ -4,18 +4,18 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use glam::DMat3;
 use lisle_core::view::View;
 use lisle_gpu::{Scene, Shading};
 use lisle_reference::fibers::{Detail, Options, fibers as make_fibers};
-use lisle_reference::{Environment, Film, Image, Reference, Settings};
-use numpy::{PyReadonlyArray3, PyUntypedArrayMethods};
+use lisle_reference::{Film, Image, Reference, Settings};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::convert::{array, field_error};
+use crate::environment::EnvironmentFields;
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
+use crate::mesh::MeshFields;
 use crate::scene::{CameraFields, LightFields, ObjectFields, scene, shading};
 use crate::yarn::extract_yarn;
 use crate::yarns::Yarns;
@@ -36,29 +36,6 @@ struct SettingsItems {
     transparent: bool,
     filter_width: f32,
     chord_error: f64,
-}
-
-/// `lisle.Environment`, by its attributes.
-#[derive(FromPyObject)]
-pub struct EnvironmentFields<'py> {
-    radiance: PyReadonlyArray3<'py, f32>,
-    world_from_environment: [[f64; 3]; 3],
-}
-
-impl EnvironmentFields<'_> {
-    fn environment(&self) -> Result<Environment, Failure> {
-        let refuse =
-            |what: String| Failure::Input(format!("Environment.radiance: expected shape (h, w, 3), got {what}"));
-        let shape = self.radiance.shape();
-        let values = self.radiance.as_slice().map_err(|error| refuse(error.to_string()))?;
-        let (texels, []) = values.as_chunks::<3>() else { return Err(refuse(format!("{shape:?}"))) };
-        let [height, width] = [shape[0], shape[1]].map(|side| u32::try_from(side).unwrap_or(0));
-        Ok(Environment {
-            size: [width, height],
-            radiance: texels.to_vec(),
-            world_from_environment: DMat3::from_cols_array_2d(&self.world_from_environment).transpose(),
-        })
-    }
 }
 
 impl SettingsItems {
@@ -116,9 +93,10 @@ pub fn fibers<'py>(
 pub fn reference<'py>(
     py: Python<'py>,
     objects: Vec<ObjectFields<'py>>,
+    meshes: Vec<(MeshFields, u32)>,
     lights: Vec<LightFields>,
     ambient: [f32; 3],
-    environment: Option<EnvironmentFields<'py>>,
+    environment: Option<EnvironmentFields>,
     camera: CameraFields,
     settings: &Bound<'py, PyDict>,
     checkpoint: Option<PathBuf>,
@@ -126,10 +104,9 @@ pub fn reference<'py>(
 ) -> Result<(Bound<'py, PyDict>, Bound<'py, PyDict>), Failure> {
     let settings: SettingsItems = settings.extract().map_err(|error| Failure::Input(field_error(py, &error)))?;
     let settings = settings.settings()?;
-    let scene = scene(objects, lights, ambient, camera)?;
-    let environment = environment.map(|fields| fields.environment()).transpose()?;
+    let scene = scene(objects, meshes, lights, ambient, environment, camera)?;
     let mut listener = Listener::new(progress);
-    let result = detached(py, || draw(&scene, environment.as_ref(), &settings, checkpoint.as_deref(), &mut listener));
+    let result = detached(py, || draw(&scene, &settings, checkpoint.as_deref(), &mut listener));
     let (image, segments, bytes) = listener.outcome(result)?;
     let statistics = PyDict::new(py);
     statistics.set_item("fiber_segments", segments)?;
@@ -140,13 +117,12 @@ pub fn reference<'py>(
 /// The picture, and how many segments and bytes its fibers have.
 fn draw(
     scene: &Scene,
-    environment: Option<&Environment>,
     settings: &Settings,
     checkpoint: Option<&Path>,
     listener: &mut Listener,
 ) -> Result<(Image, usize, usize), Failure> {
     let kept = checkpoint.filter(|path| path.exists()).map(read).transpose()?;
-    let reference = Reference::new(scene, environment, settings, &mut || listener.report(0.0))?;
+    let reference = Reference::new(scene, settings, &mut || listener.report(0.0))?;
     let mut film = kept.unwrap_or_else(|| reference.film());
     let mut saved = Instant::now();
     let mut failure = None;

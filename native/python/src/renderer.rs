@@ -9,8 +9,10 @@ use pyo3::types::PyDict;
 
 use crate::adapter::Adapter;
 use crate::convert::{array, field_error};
+use crate::environment::EnvironmentFields;
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
+use crate::mesh::MeshFields;
 use crate::scene::{CameraFields, LightFields, ObjectFields, SettingsItems, StepFields, moved, scene};
 
 thread_local! {
@@ -55,8 +57,10 @@ impl Renderer {
         &self,
         py: Python<'py>,
         objects: Vec<ObjectFields<'py>>,
+        meshes: Vec<(MeshFields, u32)>,
         lights: Vec<LightFields>,
         ambient: [f32; 3],
+        environment: Option<EnvironmentFields>,
         camera: CameraFields,
         later: Vec<StepFields<'py>>,
         neighbours: Vec<StepFields<'py>>,
@@ -65,7 +69,7 @@ impl Renderer {
     ) -> Result<(Bound<'py, PyDict>, Bound<'py, PyDict>), Failure> {
         let settings: SettingsItems = settings.extract().map_err(|error| Failure::Input(field_error(py, &error)))?;
         let settings = settings.settings()?;
-        let mut steps = vec![scene(objects, lights, ambient, camera)?];
+        let mut steps = vec![scene(objects, meshes, lights, ambient, environment, camera)?];
         let neighbours = neighbours.into_iter().map(|step| moved(&steps[0], step)).collect::<Result<Vec<_>, _>>()?;
         for step in later {
             steps.push(moved(&steps[0], step)?);

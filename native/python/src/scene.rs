@@ -6,8 +6,10 @@ use glam::{DMat4, DVec3, Vec3};
 use lisle_gpu::{Aov, Camera, Cone, Labels, Lens, Light, Object, Occlusion, Scene, Settings, Shading};
 use pyo3::prelude::*;
 
+use crate::environment::EnvironmentFields;
 use crate::error::Failure;
 use crate::material::extract_material;
+use crate::mesh::MeshFields;
 use crate::yarn::extract_yarn;
 use crate::yarns::Yarns;
 
@@ -68,7 +70,8 @@ pub struct SettingsItems {
     passes: Vec<String>,
 }
 
-fn matrix(rows: Rows) -> DMat4 {
+/// A matrix from its rows.
+pub fn matrix(rows: Rows) -> DMat4 {
     DMat4::from_cols_array_2d(&rows).transpose()
 }
 
@@ -143,14 +146,18 @@ impl From<CameraFields> for Camera {
 /// A scene, and how to draw it.
 pub fn scene(
     objects: Vec<ObjectFields<'_>>,
+    meshes: Vec<(MeshFields, u32)>,
     lights: Vec<LightFields>,
     ambient: [f32; 3],
+    environment: Option<EnvironmentFields>,
     camera: CameraFields,
 ) -> Result<Scene, Failure> {
     Ok(Scene {
         objects: objects.into_iter().map(ObjectFields::object).collect::<Result<_, _>>()?,
+        meshes: meshes.into_iter().map(|(fields, id)| fields.mesh(id)).collect(),
         lights: lights.into_iter().map(Light::from).collect(),
         ambient: Vec3::from(ambient),
+        environment: environment.map(EnvironmentFields::into),
         camera: camera.into(),
     })
 }

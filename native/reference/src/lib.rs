@@ -3,7 +3,6 @@
 
 pub mod assembly;
 pub mod cone;
-mod environment;
 mod error;
 pub mod fibers;
 mod film;
@@ -14,7 +13,6 @@ mod render;
 mod settings;
 mod world;
 
-pub use environment::Environment;
 pub use error::Error;
 pub use film::{Film, Image};
 pub use render::Reference;

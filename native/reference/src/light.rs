@@ -3,11 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use glam::{DMat4, DVec3};
-use lisle_core::sampling::{basis, disc, sphere};
-use lisle_core::scene::{Cone, Light};
-
-use crate::environment::Sky;
-use lisle_core::sampling::Random;
+use lisle_core::sampling::{Random, basis, disc, sphere};
+use lisle_core::scene::{Cone, Environment, Light};
 
 /// A direction drawn towards a light.
 pub(crate) struct LightSample {
@@ -37,7 +34,7 @@ pub(crate) enum Emitter {
     /// One side of a parallelogram or an ellipse.
     Area(Box<Panel>),
     /// All around, infinitely far.
-    Sky(Box<Sky>),
+    Sky(Environment),
 }
 
 /// An area light.

@@ -9,7 +9,6 @@ use lisle_core::view::View;
 use rayon::prelude::*;
 
 use crate::assembly::{Hit, Ray};
-use crate::environment::Environment;
 use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
 use crate::world::World;
 use crate::{Error, Settings};
@@ -39,14 +38,13 @@ impl Reference {
     /// [`Error`] for whatever cannot be drawn; [`Error::Cancelled`].
     pub fn new(
         scene: &Scene,
-        environment: Option<&Environment>,
         settings: &Settings,
         progress: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Self, Error> {
         let region = settings.check()?;
         let view = View::new(&scene.camera, settings.size)?;
-        let world = World::new(scene, environment, settings.shading, settings.chord_error, progress)?;
-        let digest = digest(scene, environment, settings, &world);
+        let world = World::new(scene, settings.shading, settings.chord_error, progress)?;
+        let digest = digest(scene, settings, &world);
         let filter = PixelFilter::new(settings.filter_width);
         Ok(Self { world, view, filter, settings: settings.clone(), region, digest })
     }
@@ -144,10 +142,11 @@ impl Reference {
 }
 
 /// Tells pictures apart: everything but the number of samples.
-fn digest(scene: &Scene, environment: Option<&Environment>, settings: &Settings, world: &World) -> u64 {
+fn digest(scene: &Scene, settings: &Settings, world: &World) -> u64 {
     let Settings { size, region, seed, bounces, shading, transparent, filter_width, .. } = settings;
     let settings = format!("{size:?} {region:?} {seed} {bounces:?} {shading:?} {transparent} {filter_width}");
-    let turned = environment.map(|environment| (environment.size, environment.world_from_environment));
+    let sky = scene.environment.as_ref();
+    let turned = sky.map(|sky| (sky.image.size(), sky.world_from_environment, sky.strength));
     let materials: Vec<_> = scene.objects.iter().map(|object| (object.id, &object.material)).collect();
     let text = format!(
         "{settings} {materials:?} {turned:?} {:?} {:?} {:?} {:?}",
@@ -156,7 +155,7 @@ fn digest(scene: &Scene, environment: Option<&Environment>, settings: &Settings,
     // FNV-1a, 64 bits, over words where there are many.
     let step = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
     let hash = text.bytes().map(u64::from).fold(0xcbf2_9ce4_8422_2325, step);
-    let texels = environment.iter().flat_map(|environment| environment.radiance.iter().flatten());
+    let texels = sky.iter().flat_map(|sky| sky.image.radiance().iter().flatten());
     let words = world.assembly.points().iter().flatten().chain(texels).map(|value| u64::from(value.to_bits()));
     words.fold(hash, step)
 }

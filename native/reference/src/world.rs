@@ -7,7 +7,6 @@ use lisle_core::scene::{Object, Scene, Shading};
 
 use crate::Error;
 use crate::assembly::Assembly;
-use crate::environment::{Environment, Sky};
 use crate::fibers::{self, Fibers};
 use crate::light::Emitter;
 use crate::material::Scattering;
@@ -34,13 +33,11 @@ impl World {
     /// Checks a scene and makes its fibers.
     pub fn new(
         scene: &Scene,
-        environment: Option<&Environment>,
         shading: Shading,
         chord_error: f64,
         progress: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Self, Error> {
         scene.validate()?;
-        environment.map_or(Ok(()), Environment::check)?;
         let origin = middle(&scene.objects);
         let space_from_world = DMat4::from_translation(-origin);
         let mut all = Fibers { points: Vec::new(), offsets: vec![0] };
@@ -59,7 +56,7 @@ impl World {
             };
             fibers::append(&mut all, object.yarns.strands(), &object.yarn, &options, &mut |_| progress())?;
         }
-        let sky = environment.and_then(Sky::new).map(|sky| Emitter::Sky(Box::new(sky)));
+        let sky = scene.environment.iter().filter(|sky| sky.shines()).cloned().map(Emitter::Sky);
         Ok(Self {
             assembly: Assembly::new(all, progress)?,
             objects,

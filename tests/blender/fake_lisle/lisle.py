@@ -152,6 +152,16 @@ class Area(_Light):
     pass
 
 
+class Environment:
+    def __init__(self, image, rotation=0.0, strength=1.0):
+        _fail("Environment")
+        if isinstance(image, np.ndarray):
+            assert image.dtype == np.float32 and image.ndim == 3 and image.shape[2] == 3
+            image = SimpleNamespace(texels=image.copy(), size=image.shape[1::-1])
+        self.image, self.world_from_environment, self.strength = image, np.array(rotation), strength
+        assert self.world_from_environment.shape in ((), (3, 3))
+
+
 class Entry:
     def __init__(self, yarns, yarn, material, transform, object_id, name, object_index, material_name, material_index):
         assert transform.shape == (4, 4) and transform.dtype == np.float64
@@ -162,8 +172,9 @@ class Entry:
 
 
 class Scene:
-    def __init__(self, camera, lights=(), ambient=(0, 0, 0)):
+    def __init__(self, camera, lights=(), ambient=(0, 0, 0), environment=None):
         self.camera, self.lights, self.ambient, self.entries = camera, list(lights), ambient, []
+        self.environment = environment
 
     def add(
         self, yarns, *, yarn, material, transform, object_id, name, object_index, material_name, material_index

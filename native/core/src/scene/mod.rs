@@ -1,11 +1,15 @@
 //! What is drawn, whoever draws it: objects, lights, a camera. Plain data, checked when a picture begins.
 
+mod environment;
 mod lens;
 mod light;
+mod mesh;
 mod motion;
 
+pub use environment::{Environment, EnvironmentImage};
 pub use lens::Lens;
 pub use light::{Cone, Light};
+pub use mesh::{Mesh, MeshKind, Triangles};
 pub use motion::between;
 
 use std::sync::Arc;
@@ -63,10 +67,14 @@ pub struct Camera {
 pub struct Scene {
     /// Yarns.
     pub objects: Vec<Object>,
+    /// What hides them, throws shadows on them and takes theirs.
+    pub meshes: Vec<Mesh>,
     /// Lights.
     pub lights: Vec<Light>,
     /// Constant radiance from everywhere, scene-linear.
     pub ambient: Vec3,
+    /// Radiance from everywhere, added to that.
+    pub environment: Option<Environment>,
     /// Viewpoint.
     pub camera: Camera,
 }
@@ -139,7 +147,9 @@ impl Scene {
             let reason = format!("{}: expected finite radiances of at least 0", self.ambient);
             return Err(SceneError::input("ambient", reason));
         }
+        self.environment.as_ref().map_or(Ok(()), Environment::validate)?;
         light::validate(&self.lights)?;
+        self.meshes.iter().try_for_each(Mesh::validate)?;
         self.objects.iter().try_for_each(Object::validate)
     }
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test crate uses a part")]
 
 pub mod curves;
-
+pub mod fiber;
 pub mod measure;
 pub mod picture;
 pub mod quiet;
@@ -103,7 +103,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: &Yarn) -> Object {
 
 /// Objects under an ambient sky without lights.
 pub fn scene(objects: Vec<Object>, camera: Camera) -> Scene {
-    Scene { objects, lights: Vec::new(), ambient: Vec3::ONE, camera }
+    Scene { objects, meshes: Vec::new(), lights: Vec::new(), ambient: Vec3::ONE, environment: None, camera }
 }
 
 /// A sun that shines along a direction.

@@ -2,10 +2,12 @@
 
 import argparse
 import re
-from math import isfinite, nan
+from math import isfinite, nan, radians
 from pathlib import Path
+from typing import TypedDict
 
 from .._native import Yarns
+from ..environment import Environment
 from ..errors import InputError
 from ..lights import Sun
 from ..loading import USD_SUFFIXES, load
@@ -39,7 +41,36 @@ def add_picture(parser: argparse.ArgumentParser, samples: int) -> None:
         help=names(Material.presets(), DEFAULT_MATERIAL),
     )
     add("--shading", choices=("physical", "simple"), default="physical", help="shading model (default physical)")
+    add(
+        "--environment",
+        type=Path,
+        metavar="FILE",
+        help="light from a picture of the sky, .exr or .hdr, in place of a sun and constant ambient light",
+    )
+    add(
+        "--environment-rotation",
+        type=number,
+        default=0.0,
+        metavar="DEG",
+        help="by which it is turned about Z, degrees, counter-clockwise from above (default 0)",
+    )
     add_view(parser)
+
+
+class Lighting(TypedDict):
+    """What a picture is lit by, as arguments of a render."""
+
+    lights: list[Sun]
+    ambient: tuple[float, float, float]
+    environment: Environment | None
+
+
+def lighting(arguments: argparse.Namespace) -> Lighting:
+    """As the command line says."""
+    if arguments.environment is None:
+        return Lighting(lights=[SUN], ambient=AMBIENT, environment=None)
+    environment = Environment(arguments.environment, radians(arguments.environment_rotation))
+    return Lighting(lights=[], ambient=(0.0, 0.0, 0.0), environment=environment)
 
 
 def add_view(parser: argparse.ArgumentParser) -> None:
@@ -105,6 +136,17 @@ def whole(text: str) -> int:
     if not re.fullmatch(r"\d{1,10}", text) or int(text) >= 2**32:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to 4294967295")
     return int(text)
+
+
+def number(text: str) -> float:
+    """A finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = nan
+    if not isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
 
 
 def positive(text: str) -> float:

@@ -7,7 +7,7 @@ from ..camera import Camera
 from ..material import Material
 from ..reference import Reference
 from ..yarn import Yarn
-from .options import AMBIENT, SUN, add_input, add_picture, at_least_one, check_output, open_still, whole
+from .options import add_input, add_picture, at_least_one, check_output, lighting, open_still, whole
 from .progress import Bar
 
 
@@ -17,7 +17,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         "reference",
         help="draw a file, slowly and right",
         description="Draws a file of yarn curves with every fiber explicit and light scattered between them, under the "
-        "sun and ambient light of `lisle render`. An .exr holds the variance of each pixel as well.",
+        "light of `lisle render`. An .exr holds the variance of each pixel as well.",
     )
     add_input(parser, ".png or .exr")
     add_picture(parser, samples=64)
@@ -46,8 +46,7 @@ def run(arguments: argparse.Namespace) -> None:
             yarn=Yarn.preset(arguments.yarn),
             material=Material.preset(arguments.material),
             camera=Camera.fit(first, arguments.direction, arguments.size),
-            lights=[SUN],
-            ambient=AMBIENT,
+            **lighting(arguments),
             samples=arguments.samples,
             shading=arguments.shading,
             bounces=arguments.bounces,

@@ -13,14 +13,16 @@ from ..loading import load
 from ..material import Material
 from ..renderer import Renderer
 from ..yarn import Yarn
-from .options import AMBIENT, SUN, add_input, add_picture, check_output, frame_range, open_animation, whole
+from .options import add_input, add_picture, check_output, frame_range, lighting, open_animation, whole
 from .progress import Bar
 
 
 def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     """Adds the command to a parser."""
     parser = commands.add_parser(
-        "render", help="draw a file", description="Draws a file of yarn curves under a sun and constant ambient light."
+        "render",
+        help="draw a file",
+        description="Draws a file of yarn curves under a sun and constant ambient light, or a picture of the sky.",
     )
     add_input(parser, ".png or .exr; #### stands for the frame")
     add_picture(parser, samples=16)
@@ -49,6 +51,7 @@ def run(arguments: argparse.Namespace) -> None:
     camera = Camera.fit(reference, arguments.direction, arguments.size)
     renderer = Renderer(arguments.adapter)
     yarn, material = Yarn.preset(arguments.yarn), Material.preset(arguments.material)
+    light = lighting(arguments)
     with Bar(len(pictures)) as bar:
         for step, (path, yarns) in enumerate(pictures):
             bar.begin(step, path.name)
@@ -57,8 +60,7 @@ def run(arguments: argparse.Namespace) -> None:
                 yarn=yarn,
                 material=material,
                 camera=camera,
-                lights=[SUN],
-                ambient=AMBIENT,
+                **light,
                 samples=arguments.samples,
                 shading=arguments.shading,
                 transport_photons=arguments.transport_photons,

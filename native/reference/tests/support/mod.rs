@@ -92,12 +92,19 @@ pub fn orthographic(world_from_camera: DMat4, height: f64, size: [u32; 2]) -> Ca
 
 /// A scene of one object.
 pub fn scene(object: Object, lights: Vec<Light>, ambient: f32, camera: Camera) -> Scene {
-    Scene { objects: vec![object], lights, ambient: Vec3::splat(ambient), camera }
+    Scene {
+        objects: vec![object],
+        meshes: Vec::new(),
+        lights,
+        ambient: Vec3::splat(ambient),
+        environment: None,
+        camera,
+    }
 }
 
 /// What is ready to be drawn.
 pub fn prepare(scene: &Scene, settings: &Settings) -> Reference {
-    Reference::new(scene, None, settings, &mut || ControlFlow::Continue(())).expect("a scene")
+    Reference::new(scene, settings, &mut || ControlFlow::Continue(())).expect("a scene")
 }
 
 /// Draws.
