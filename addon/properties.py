@@ -295,6 +295,18 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
 class LisleObjectSettings(bpy.types.PropertyGroup):
     """`object.lisle`"""
 
+    mesh_kind: EnumProperty(
+        name="Mesh",
+        description="What is seen of this object's mesh. What is seen at all hides yarn and throws shadows on it",
+        items=(
+            ("SHADED", "Shaded", "A matt surface of the material's base colour", 0),
+            ("SHADOW_CATCHER", "Shadow Catcher", "Only the shadows on it, to lay over a photograph", 1),
+            ("HOLDOUT", "Holdout", "A hole in the picture", 2),
+            ("INVISIBLE", "Invisible", "Nothing, nor its shadow", 3),
+        ),
+        update=_tag,
+    )
+
     yarn_radius: FloatProperty(
         name="Yarn Radius",
         description="Radius of the yarn; 0 takes the curve's own. Multiplies the point radius of legacy curves",

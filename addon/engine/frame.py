@@ -14,7 +14,7 @@ from ..export.scene import collect
 from ..export.world import read_world
 from . import reference
 from .assembly import add_objects
-from .job import REST_SHAPES
+from .job import REST_SHAPES, SURFACES
 from .motion import at_times, shutter_times
 from .passes import wanted_passes
 from .renderer import drop, renderer
@@ -114,8 +114,8 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
         raise SceneError("Stereoscopy is not supported: turn it off in the output properties")
     engine.update_stats("", "Reading curves")
     content = collect(lisle, depsgraph, note)
-    if not content.placements:
-        note("the view layer shows no curves")
+    if not (content.placements or content.meshes):
+        note("the view layer shows neither curves nor meshes")
     at_rest = REST_SHAPES.find(lisle, engine, depsgraph, content)
     camera = engine.camera_override or depsgraph.scene.camera
     world = read_world(lisle, depsgraph.scene.world, note)
@@ -127,6 +127,11 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
         return scene, add_objects(lisle, scene, moved, at_rest, REST_SHAPES)
 
     scene, pass_index_of = scene_of(content, native_camera(lisle, camera, depsgraph, frame_size))
+    if depsgraph.scene.lisle.method != "REFERENCE":
+        scene.meshes, of_meshes = SURFACES.meshes(lisle, content.meshes, pass_index_of)
+        pass_index_of |= of_meshes
+    elif content.meshes:
+        note("the path tracer does not draw meshes")
     shutter, now = shutter_times(depsgraph.scene), depsgraph.scene.frame_current_final
     if shutter and with_neighbours:
         note("the pass Vector is black, because there is motion blur")

@@ -9,8 +9,10 @@ from bpy.app.handlers import persistent
 
 from ..export.world import forget_images
 from .rest import RestShapes
+from .surfaces import Surfaces
 
 REST_SHAPES = RestShapes()
+SURFACES = Surfaces()
 
 _said = set()
 
@@ -25,6 +27,7 @@ def not_said_before(sentences):
 @persistent
 def _forget(*_):
     REST_SHAPES.clear()
+    SURFACES.clear()
     _said.clear()
     forget_images()
 

@@ -5,7 +5,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..core.painter import Painter
-from .snapshot import REST_SHAPES
+from .snapshot import REST_SHAPES, SURFACES
 
 PAINTER = Painter()
 
@@ -52,6 +52,7 @@ def _forget(*_):
         close(name)
     PAINTER.stop()
     REST_SHAPES.clear()
+    SURFACES.clear()
 
 
 # A final render has the graphics adapter for itself.

@@ -9,9 +9,13 @@ from ..export.world import DARK, forget_images, read_world
 from .assembly import add_objects
 from .renderer import drop, renderer
 from .rest import RestShapes
+from .surfaces import Surfaces
 
 REST_SHAPES = RestShapes()
 """Rest shapes of what views have shown; forgotten with the file."""
+
+SURFACES = Surfaces()
+"""Of what views have shown."""
 
 _SHADOW_TEXELS = (256, 512, 1024)
 _PHOTONS = (20_000, 20_000, 500_000)
@@ -36,6 +40,7 @@ class Snapshot:
         self.background = None if scene.render.film_transparent else self._world.ambient
         """Scene-linear colour behind the yarns, None if it is transparent."""
         self._native = None
+        self._meshes = []
         settings = scene.lisle
         self.number = next(_numbers)
         """Differs from that of any other snapshot."""
@@ -62,21 +67,21 @@ class Snapshot:
             )
         )
 
-    def painter(self, camera, lighting=None, transparent=None):
+    def painter(self, camera, lighting=None, alone=False):
         """The `draw` of a core.painter.Task that shows this from a lisle.Camera.
 
-        `lighting` is a list of lights in place of the scene's and its world; `transparent` overrides the film's
-        setting.
+        `lighting` is a list of lights in place of the scene's and its world; `alone` leaves out meshes and what is
+        behind everything.
         """
         settings = dict(self._settings)
-        if transparent is not None:
-            settings["transparent"] = transparent
+        if alone:
+            settings["transparent"] = True
 
         def draw(size, region, samples, first_sample, quality, go_on):
             lisle = self._lisle
             try:
                 image = renderer(lisle).render(
-                    self._scene(camera, lighting),
+                    self._scene(camera, lighting, alone),
                     size=size,
                     region=region,
                     samples=samples,
@@ -95,14 +100,16 @@ class Snapshot:
 
         return draw
 
-    def _scene(self, camera, lighting):
+    def _scene(self, camera, lighting, alone):
         """The lisle.Scene; made at the first call, in the painter's thread."""
         if self._native is None:
             scene = self._lisle.Scene(camera=camera)
-            add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES)
+            taken = add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES)
+            self._meshes, _ = SURFACES.meshes(self._lisle, self.content.meshes, taken)
             self._native = scene
         self._native.camera = camera
         world = self._world if lighting is None else DARK
         self._native.lights = self.content.lights if lighting is None else lighting
         self._native.ambient, self._native.environment = world.ambient, world.environment
+        self._native.meshes = [] if alone else self._meshes
         return self._native

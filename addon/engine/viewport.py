@@ -55,18 +55,18 @@ class Viewport:
         """Draws the yarns alone, hidden by what is nearer. `lighting` as in Snapshot.painter."""
         if view.is_empty or self._snapshot is None or not self._snapshot.content.placements:
             return
-        picture, _ = self._picture(view, lighting, True)
+        picture, _ = self._picture(view, lighting, alone=True)
         if picture is not None:
             self._screen.draw_in_depth(picture, view)
         else:
             self._screen.draw_lines(self._snapshot, view, "LESS_EQUAL")
 
-    def _picture(self, view, lighting=None, transparent=None):
+    def _picture(self, view, lighting=None, alone=False):
         """The picture if there is one, and a line for the status."""
         snapshot, lisle = self._snapshot, native.module()
         camera = lisle.Camera(view.world_from_camera, view.clip_from_camera, view.size, **view.lens)
         key = (snapshot.number, view.key(), repr(lighting))
-        draw = snapshot.painter(camera, lighting, transparent)
+        draw = snapshot.painter(camera, lighting, alone)
         painting.PAINTER.show(self.name, Task(key, view.size, view.region, snapshot.samples, draw))
         painting.watch(self.name, self._on_news)
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a view layer shows at one frame: curves, where they are placed, lights.
+"""What a view layer shows at one frame: curves, where they are placed, lights, meshes.
 
 Blender lists geometry-nodes output twice: in the geometry set of the object that makes it, and as extra entries of
 `depsgraph.object_instances` without attributes. Only the first is read; instances of whole objects and collections
@@ -17,6 +17,8 @@ from .curves import read_curves
 from .legacy import read_legacy
 from .lights import native_light
 from .materials import geometry_materials, yarn_and_material
+from .meshes import TYPES as MESH_TYPES
+from .meshes import MeshPlacement, MeshReader
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,8 @@ class Content:
     """Geometry by key."""
     placements: list = field(default_factory=list)
     lights: list = field(default_factory=list)
+    meshes: list = field(default_factory=list)
+    """MeshPlacement."""
 
     def equals(self, other):
         """Whether both look the same."""
@@ -73,19 +77,20 @@ class Content:
             and all(mine.equals(other.geometries[key]) for key, mine in self.geometries.items())
             and [placement.order() for placement in self.placements] == [p.order() for p in other.placements]
             and repr(self.lights) == repr(other.lights)
+            and [placement.order() for placement in self.meshes] == [p.order() for p in other.meshes]
         )
 
 
 def collect(lisle, depsgraph, note, only=None, shows=None):
-    """Reads the curves and lights of a view layer at the frame that `depsgraph` is at.
+    """Reads the curves, lights and meshes of a view layer at the frame that `depsgraph` is at.
 
-    `only` limits it to the curves of objects of these names (as in `Geometry.key`), without lights.
+    `only` limits it to the curves of objects of these names (as in `Geometry.key`), without lights and meshes.
     `shows(object)` says whether a view shows an object, or what it instances; without it, all are shown.
     `note` is called with each sentence about something left out.
     """
     content = Content()
-    parts_of = {}
-    meshes = set()
+    parts_of, reader = {}, MeshReader()
+    ignored = set()
     for instance in depsgraph.object_instances:
         obj = instance.object
         if obj.type != obj.original.type:  # a component of some geometry set under its owner's name
@@ -99,9 +104,11 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
             continue
         if shows is not None and not shows((instance.parent if instance.is_instance else obj).original):
             continue
+        if only is None and obj.type in MESH_TYPES:
+            content.meshes += reader.read(instance)
         if not _may_have_curves(obj):
-            if obj.type == "MESH":
-                meshes.add(name)
+            if obj.type in _IGNORED_TYPES:
+                ignored.add(f"'{name}' ({obj.type.lower()})")
             continue
         if only is None and not obj.visible_camera:
             continue
@@ -126,10 +133,14 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
                     continue
                 identity = stable_id(part.key, *instancer, number)
                 content.placements.append(Placement(part.key, matrix, identity, obj.pass_index, obj.name))
-    if meshes and only is None:
-        note(f"mesh objects without curves are not drawn: {', '.join(sorted(meshes)[:5])}")
+    if ignored and only is None:
+        note(f"objects of these kinds are not drawn: {', '.join(sorted(ignored)[:5])}")
     content.placements.sort(key=Placement.order)
+    content.meshes.sort(key=MeshPlacement.order)
     return content
+
+
+_IGNORED_TYPES = {"VOLUME", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"}
 
 
 def _may_have_curves(obj):

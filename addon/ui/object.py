@@ -3,6 +3,7 @@
 
 import bpy
 
+from ..export.meshes import TYPES as MESH_TYPES
 from .panel import LislePanel
 
 
@@ -27,4 +28,16 @@ class LISLE_OBJECT_PT_yarn(LislePanel, bpy.types.Panel):
         sub.prop(settings, "reference_frame", text="")
 
 
-PANELS = (LISLE_OBJECT_PT_yarn,)
+class LISLE_OBJECT_PT_mesh(LislePanel, bpy.types.Panel):
+    bl_label = "Mesh"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None and context.object.type in MESH_TYPES
+
+    def draw(self, context):
+        self.split_layout().prop(context.object.lisle, "mesh_kind", text="Seen As")
+
+
+PANELS = (LISLE_OBJECT_PT_yarn, LISLE_OBJECT_PT_mesh)

@@ -86,7 +86,9 @@ def _triangles(
     corners = _array(f"{name}: triangles", triangles, np.int64)
     if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
         wrong = int(np.argmax((corners < 0).any(axis=1) | (corners >= len(points)).any(axis=1)))
-        raise InputError(f"{name}: triangle {wrong} is {corners[wrong].tolist()}, but there are {len(points)} positions")
+        raise InputError(
+            f"{name}: triangle {wrong} is {corners[wrong].tolist()}, but there are {len(points)} positions"
+        )
     at_corners = None
     if normals is not None:
         at_corners = np.asarray(normals, np.float32)

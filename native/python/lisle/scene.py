@@ -169,7 +169,11 @@ def scene_of(
     if not isinstance(what, Yarns):
         raise InputError(f"expected lisle.Yarns or a lisle.Scene, got {type(what).__name__}")
     scene = Scene(
-        camera or Camera.fit(what), lights or (), (0.0, 0.0, 0.0) if ambient is None else ambient, environment, meshes or ()
+        camera or Camera.fit(what),
+        lights or (),
+        (0.0, 0.0, 0.0) if ambient is None else ambient,
+        environment,
+        meshes or (),
     )
     scene.add(what, yarn, material)
     return scene

@@ -38,6 +38,9 @@ impl World {
         progress: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Self, Error> {
         scene.validate()?;
+        if !scene.meshes.is_empty() {
+            return Err(Error::Input { what: "meshes", reason: "the path tracer draws yarns alone".into() });
+        }
         let origin = middle(&scene.objects);
         let space_from_world = DMat4::from_translation(-origin);
         let mut all = Fibers { points: Vec::new(), offsets: vec![0] };

@@ -162,6 +162,21 @@ class Environment:
         assert self.world_from_environment.shape in ((), (3, 3))
 
 
+class Mesh:
+    def __init__(self, positions, triangles, normals=None, *, base_color, kind, name):
+        assert positions.shape[1:] == triangles.shape[1:] == (3,) and positions.dtype == np.float32
+        assert normals is None or normals.shape == (*triangles.shape, 3)
+        assert kind in ("shaded", "shadow-catcher", "holdout") and len(base_color) == 3
+        self.positions, self.corners, self.normals = positions, triangles, normals
+        self.triangles, self.base_color, self.kind, self.name = object(), base_color, kind, name
+
+    def at(self, transform, object_id, name):
+        placed = object.__new__(Mesh)
+        placed.__dict__.update(self.__dict__, world_from_object=transform, object_id=object_id, name=name)
+        assert transform.shape == (4, 4)
+        return placed
+
+
 class Entry:
     def __init__(self, yarns, yarn, material, transform, object_id, name, object_index, material_name, material_index):
         assert transform.shape == (4, 4) and transform.dtype == np.float64
@@ -174,7 +189,7 @@ class Entry:
 class Scene:
     def __init__(self, camera, lights=(), ambient=(0, 0, 0), environment=None):
         self.camera, self.lights, self.ambient, self.entries = camera, list(lights), ambient, []
-        self.environment = environment
+        self.environment, self.meshes = environment, []
 
     def add(
         self, yarns, *, yarn, material, transform, object_id, name, object_index, material_name, material_index

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes as flat arrays."""
+
+import functools
+import hashlib
+from dataclasses import dataclass
+
+import numpy as np
+
+SHADED, SHADOW_CATCHER, HOLDOUT = "shaded", "shadow-catcher", "holdout"
+"""Kinds, as the native module names them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles in object space."""
+
+    positions: np.ndarray
+    """(n, 3) float32, metres."""
+    triangles: np.ndarray
+    """(m, 3) int32."""
+    normals: np.ndarray | None
+    """(m, 3, 3) float32 at the corners; None if it is flat."""
+
+    @functools.cached_property
+    def digest(self):
+        """Equal for equal surfaces."""
+        hasher = hashlib.blake2b(digest_size=16)
+        for array in (self.positions, self.triangles, self.normals):
+            hasher.update(b"-" if array is None else str(array.shape).encode())
+            if array is not None:
+                hasher.update(np.ascontiguousarray(array))
+        return hasher.digest()
+
+
+def by_material(positions, triangles, normals, material_index):
+    """[(index, Surface)]: the triangles of each material, with the positions that they have."""
+    parts = []
+    for index in np.unique(material_index):
+        mine = material_index == index
+        if mine.all():
+            parts.append((int(index), Surface(positions, triangles, normals)))
+            continue
+        used, corners = np.unique(triangles[mine], return_inverse=True)
+        surface = Surface(
+            positions[used], corners.reshape(-1, 3).astype(np.int32), None if normals is None else normals[mine]
+        )
+        parts.append((int(index), surface))
+    return parts

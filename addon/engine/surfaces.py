@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Native meshes, kept from picture to picture so that the device holds on to what has not changed."""
+
+
+class Surfaces:
+    """Those of the scene that was drawn last."""
+
+    def __init__(self):
+        self._kept = {}
+
+    def clear(self):
+        self._kept = {}
+
+    def meshes(self, lisle, placements, taken):
+        """[lisle.Mesh] of MeshPlacements, and Blender's object index by object id, for ids that are not in `taken`."""
+        kept, meshes, pass_index_of = {}, [], {}
+        for placement in placements:
+            surface = placement.surface
+            key = (surface.digest, placement.color, placement.kind)
+            mesh = kept.get(key) or self._kept.get(key)
+            if mesh is None:
+                mesh = lisle.Mesh(
+                    surface.positions,
+                    surface.triangles,
+                    surface.normals,
+                    base_color=placement.color,
+                    kind=placement.kind,
+                    name=placement.name,
+                )
+            kept[key] = mesh
+            identity = placement.identity
+            while identity in taken or identity in pass_index_of:
+                identity += 1
+            pass_index_of[identity] = placement.pass_index
+            meshes.append(mesh.at(placement.world_from_object, object_id=identity, name=placement.name))
+        self._kept = kept
+        return meshes, pass_index_of

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Meshes of the scene, as they hide yarn and throw shadows on it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.pixels import stable_id
+from ..core.surfaces import HOLDOUT, SHADED, SHADOW_CATCHER, Surface, by_material
+
+TYPES = {"MESH", "FONT", "META", "SURFACE"}
+"""Objects that are meshes when they are evaluated."""
+
+_GREY = (0.8, 0.8, 0.8)
+_KINDS = {"SHADED": SHADED, "SHADOW_CATCHER": SHADOW_CATCHER, "HOLDOUT": HOLDOUT}
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPlacement:
+    """One material's part of a mesh at a place."""
+
+    surface: Surface
+    world_from_object: np.ndarray
+    """(4, 4) float64."""
+    color: tuple
+    """Scene-linear (r, g, b)."""
+    kind: str
+    identity: int
+    """As that of a yarn's placement."""
+    pass_index: int
+    name: str
+
+    def order(self):
+        """Sorts placements the same way in every process; equal if they look the same."""
+        return (
+            self.identity, self.surface.digest, self.world_from_object.tobytes(), self.color, self.kind,
+            self.pass_index, self.name,
+        )  # fmt: skip
+
+
+class MeshReader:
+    """Reads meshes, each geometry once."""
+
+    def __init__(self):
+        self._parts_of = {}
+
+    def read(self, instance):
+        """[MeshPlacement] of an entry of `depsgraph.object_instances` whose object is one of `TYPES`."""
+        obj = instance.object
+        kind = mesh_kind(obj)
+        if kind is None or not instance.show_self:
+            return []
+        world_from_object = np.array(instance.matrix_world, dtype=np.float64)
+        instancer = (instance.parent.name_full, *instance.persistent_id) if instance.is_instance else ()
+        materials = [slot.material for slot in obj.material_slots] or [None]
+        placements = []
+        for index, surface in self._parts(obj):
+            color = base_color(materials[min(index, len(materials) - 1)])
+            identity = stable_id("mesh", obj.original.name_full, index, *instancer)
+            placements.append(
+                MeshPlacement(surface, world_from_object, color, kind, identity, obj.pass_index, obj.name)
+            )
+        return placements
+
+    def _parts(self, obj):
+        """[(material index, Surface)]"""
+        key = obj.data.as_pointer() if obj.type == "MESH" else obj.as_pointer()
+        if key not in self._parts_of:
+            mesh = obj.data if obj.type == "MESH" else obj.to_mesh()
+            self._parts_of[key] = [] if mesh is None else _read(mesh)
+            if obj.type != "MESH":
+                obj.to_mesh_clear()
+        return self._parts_of[key]
+
+
+def mesh_kind(obj):
+    """The native name of what is seen of a mesh object; None if nothing is."""
+    kind = obj.lisle.mesh_kind
+    if kind == "INVISIBLE" or not obj.visible_camera:
+        return None
+    if kind == "SHADED" and obj.is_holdout:
+        return HOLDOUT
+    if kind == "SHADED" and obj.is_shadow_catcher:
+        return SHADOW_CATCHER
+    return _KINDS[kind]
+
+
+def base_color(material):
+    """Scene-linear (r, g, b) of a material: of the node that makes its surface, or its colour in the viewport."""
+    if material is None:
+        return _GREY
+    color = material.diffuse_color
+    output = None if material.node_tree is None else material.node_tree.get_output_node("ALL")
+    if output is not None and output.inputs["Surface"].is_linked:
+        inputs = output.inputs["Surface"].links[0].from_node.inputs
+        socket = inputs.get("Base Color") or inputs.get("Color")
+        if socket is not None and not socket.is_linked and socket.type == "RGBA":
+            color = socket.default_value
+    return tuple(min(max(channel, 0.0), 1.0) for channel in color[:3])
+
+
+def _read(mesh):
+    """[(material index, Surface)] of an evaluated mesh."""
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    if not count:
+        return []
+    positions = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", positions)
+    triangles = np.empty(3 * count, np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles)
+    material_index = np.empty(count, np.int32)
+    mesh.loop_triangles.foreach_get("material_index", material_index)
+    normals = None
+    if mesh.normals_domain != "FACE":
+        at_corners = np.empty(3 * len(mesh.loops), np.float32)
+        mesh.corner_normals.foreach_get("vector", at_corners)
+        corners = np.empty(3 * count, np.int32)
+        mesh.loop_triangles.foreach_get("loops", corners)
+        normals = at_corners.reshape(-1, 3)[corners.reshape(-1, 3)]
+    return by_material(positions.reshape(-1, 3), triangles.reshape(-1, 3), normals, material_index)
