@@ -170,8 +170,8 @@ impl View {
             return [a as f32, b as f32];
         }
         let (near, far) = self.depth_range(bounds);
-        // A surface at the border counts.
-        let margin = 1e-3 * (far - near);
+        // A surface at the border counts, and f32 tells the planes of a flat box apart.
+        let margin = 1e-3 * (far - near + far.abs().max(near.abs()));
         let (near, far) = ((near - margin).max(self.near), (far + margin).min(self.far));
         [(-1.0 / (far - near)) as f32, (far / (far - near)) as f32]
     }

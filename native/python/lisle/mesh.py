@@ -1,7 +1,7 @@
 """Surfaces among the yarns."""
 
 import copy
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -82,10 +82,11 @@ class Mesh:
 def _triangles(
     name: str, positions: npt.ArrayLike, triangles: npt.ArrayLike, normals: npt.ArrayLike | None
 ) -> _native.Triangles:
-    points = _array(f"{name}: positions", positions, np.float32)
-    corners = _array(f"{name}: triangles", triangles, np.int64)
-    if corners.size and not (0 <= corners.min() and corners.max() < len(points)):
-        wrong = int(np.argmax((corners < 0).any(axis=1) | (corners >= len(points)).any(axis=1)))
+    points: npt.NDArray[np.float32] = _array(f"{name}: positions", positions, np.float32)
+    corners: npt.NDArray[np.int64] = _array(f"{name}: triangles", triangles, np.int64)
+    outside = ((corners < 0) | (corners >= len(points))).any(axis=1)
+    if outside.any():
+        wrong = int(np.argmax(outside))
         raise InputError(
             f"{name}: triangle {wrong} is {corners[wrong].tolist()}, but there are {len(points)} positions"
         )
@@ -102,7 +103,7 @@ def _triangles(
     return _native.Triangles(points, corners.astype(np.uint32), at_corners)
 
 
-def _array(name: str, value: npt.ArrayLike, kind: type[np.generic]) -> npt.NDArray[np.generic]:
+def _array(name: str, value: npt.ArrayLike, kind: type[np.generic]) -> npt.NDArray[Any]:
     try:
         array = np.asarray(value)
         array = np.ascontiguousarray(array, kind)

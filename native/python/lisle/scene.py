@@ -88,7 +88,7 @@ class Scene:
         return tuple(self._objects)
 
     def numbered_meshes(self) -> list[tuple[Mesh, int]]:
-        """Each mesh with its number in the object-id pass: its own, or the next after those of yarns and other meshes."""
+        """Each mesh with its number in the object-id pass: its own, or the next after all those that are given."""
         taken = [added.object_id for added in self._objects]
         taken += [mesh.object_id for mesh in self.meshes if mesh.object_id is not None]
         free = count(max(taken, default=0) + 1)

@@ -1,0 +1,99 @@
+"""Meshes in scenes from Python."""
+
+import lisle
+import numpy as np
+import pytest
+from conftest import line
+
+SIZE = (64, 48)
+SQUARE = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)], np.float32)
+HALVES = [(0, 1, 2), (0, 2, 3)]
+
+
+@pytest.fixture(scope="module")
+def yarns():
+    return lisle.Yarns(line(20, 0.1) - [1, 0, 0], [0, 20], yarn_radius=0.1)
+
+
+def from_above():
+    """Shows x, y in -1.6 to 1.6 by -1.2 to 1.2."""
+    world_from_camera = np.eye(4)
+    world_from_camera[2, 3] = 5
+    return lisle.Camera(world_from_camera, np.diag([1 / 1.6, 1 / 1.2, -0.02, 1.0]) + 0.0, SIZE)
+
+
+def square(z=0.0, scale=1.0, **options):
+    transform = np.diag([scale, scale, scale, 1.0])
+    transform[2, 3] = z
+    return lisle.Mesh(SQUARE, HALVES, transform=transform, **options)
+
+
+def draw(renderer, yarns, meshes, **options):
+    settings = {"lights": [lisle.Sun(direction=(0, 0.6, -0.8), strength=np.pi)], "samples": 1, "filter_width": 0.0}
+    return renderer.render(yarns, camera=from_above(), meshes=meshes, **settings | options)
+
+
+def test_a_mesh_hides_and_is_numbered(renderer, yarns):
+    below = draw(renderer, yarns, [square(z=-0.5)])
+    assert set(np.unique(below["object_id"])) == {0, 1, 2}
+    above = draw(renderer, yarns, [square(z=0.5, object_id=40)])
+    assert set(np.unique(above["object_id"])) >= {0, 40}
+    assert (above["object_id"][24, 15:50] == 40).all()
+    lit = below["combined"][30, 32]
+    np.testing.assert_allclose(lit, (0.64, 0.64, 0.64, 1), rtol=1e-3)
+
+
+def test_kinds_and_colours(renderer, yarns):
+    shaded = draw(renderer, yarns, [square(z=-0.5, base_color=(0.5, 0.25, 0.0))])
+    np.testing.assert_allclose(shaded["combined"][30, 32], (0.4, 0.2, 0, 1), rtol=1e-3)
+    caught = draw(renderer, yarns, [square(z=-0.5, kind="shadow-catcher")])
+    rows = caught["alpha"][:, 32]
+    assert rows[16] > 0.9 and rows[30] == 0.0, "the shadow lies 0.5 · 0.6 / 0.8 beside the yarn"
+    hole = draw(renderer, yarns, [square(z=-0.5, kind="holdout")], transparent=False, ambient=(0.3, 0.3, 0.3))
+    assert not hole["combined"][30, 32].any() and hole["alpha"][2, 32] == 1
+
+
+def test_normals_by_corner_and_by_position(renderer, yarns):
+    slanting = np.tile(np.array((0.3, 0.0, 1.0), np.float32), (4, 1))
+    a = draw(renderer, yarns, [lisle.Mesh(SQUARE - [0, 0, 0.5], HALVES, slanting)])
+    b = draw(renderer, yarns, [lisle.Mesh(SQUARE - [0, 0, 0.5], HALVES, slanting[np.array(HALVES)])])
+    np.testing.assert_array_equal(a["combined"], b["combined"])
+    np.testing.assert_allclose(a["normal"][30, 32], slanting[0] / np.linalg.norm(slanting[0]), atol=1e-3)
+
+
+def test_instances_share_their_geometry(renderer, yarns):
+    mesh = square(z=-0.5)
+    far = np.eye(4)
+    far[2, 3] = -1
+    other = mesh.at(far, name="other")
+    assert other.triangles is mesh.triangles and mesh.world_from_object[2, 3] == -0.5
+    assert set(np.unique(draw(renderer, yarns, [mesh, other])["object_id"])) == {0, 1, 2}
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (((SQUARE, [(0, 1, 4)]), {}), r"mesh: triangle 0 is \[0, 1, 4\], but there are 4"),
+        (((SQUARE, [(0, 1, -1)]), {}), "triangle 0"),
+        (((SQUARE[:, :2], HALVES), {}), r"positions: expected shape \(n, 3\)"),
+        (((SQUARE * np.nan, HALVES), {}), "position 0"),
+        (((SQUARE, HALVES, SQUARE[:3]), {}), "normals: expected shape"),
+        (((SQUARE, HALVES), {"kind": "glass"}), "kind: 'glass'"),
+        (((SQUARE, HALVES), {"base_color": (2, 0, 0)}), "base_color"),
+        (((SQUARE, HALVES), {"object_id": 0}), "object_id 0"),
+        (((SQUARE, HALVES), {"transform": np.eye(3)}), "transform"),
+    ],
+)
+def test_what_is_no_mesh_is_named(arguments, message):
+    positional, named = arguments
+    with pytest.raises(lisle.InputError, match=message):
+        lisle.Mesh(*positional, **named)
+
+
+def test_a_scene_takes_meshes_alone(renderer, yarns):
+    with pytest.raises(lisle.InputError, match="mesh 0: expected a lisle.Mesh"):
+        lisle.Scene(from_above(), meshes=[SQUARE])
+    scene = lisle.Scene(from_above(), [lisle.Sun(direction=(0, 0, -1))], meshes=[square()])
+    assert set(np.unique(renderer.render(scene, samples=1)["object_id"])) == {0, 1}
+    with pytest.raises(lisle.InputError, match="meshes"):
+        lisle.Reference().render(scene, samples=1)
