@@ -282,6 +282,8 @@ impl TableCache {
 
 #[cfg(test)]
 mod tests {
+    use lisle_precompute::TransportSize;
+
     use super::*;
 
     fn unpack(word: u32) -> [f32; 3] {
@@ -299,5 +301,22 @@ mod tests {
                 assert!((a - b).abs() <= most / 511.0, "{color:?}: {b}");
             }
         }
+    }
+
+    #[test]
+    fn shaders_have_the_sizes_of_transport_tables() {
+        let source = include_str!("../../../shaders/passes/transport.wgsl");
+        let size = TransportSize::ALL;
+        for (name, value) in [
+            ("LIGHT_LONGITUDES", size.light_longitudes),
+            ("LIGHT_AZIMUTHS", size.light_azimuths),
+            ("RINGS", size.rings),
+            ("VIEW_LONGITUDES", size.view_longitudes),
+            ("VIEW_AZIMUTHS", size.view_azimuths),
+            ("ANGLES", size.sides),
+        ] {
+            assert!(source.contains(&format!("const TRANSPORT_{name}: u32 = {value}u;")), "{name}");
+        }
+        assert!(source.contains(&format!("const TRANSPORT_REACH: f32 = {:?};", Transport::REACH)));
     }
 }
