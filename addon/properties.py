@@ -269,6 +269,45 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
         subtype="PIXEL",
         update=_tag,
     )
+    use_noise_threshold: BoolProperty(
+        name="Noise Threshold",
+        description="Stop before all samples are drawn, when the picture is smooth enough",
+    )
+    noise_threshold: FloatProperty(
+        name="Threshold",
+        description="Noise at which to stop, relative to the colour's square root. Looked at after 16, 32, 64 samples "
+        "and so on",
+        min=0.0001,
+        soft_min=0.001,
+        max=1,
+        default=0.01,
+        precision=4,
+    )
+    time_limit: FloatProperty(
+        name="Time Limit",
+        description="Stop when a picture has taken so long; 0 for no limit",
+        min=0,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+    )
+    filter: EnumProperty(
+        name="Pixel Filter",
+        description="How samples are spread about a pixel's center",
+        items=(
+            ("blackman-harris", "Blackman-Harris", "Smooth, without ringing", 0),
+            ("gaussian", "Gaussian", "Sharper at the same width", 1),
+            ("box", "Box", "Even", 2),
+        ),
+    )
+    filter_width: FloatProperty(
+        name="Width",
+        description="Width of the pixel filter",
+        min=0.01,
+        soft_max=10,
+        max=100,
+        default=1.5,
+        subtype="PIXEL",
+    )
     motion_steps: IntProperty(
         name="Steps",
         description="Times at which the scene is evaluated while the shutter is open, besides its opening. "

@@ -45,6 +45,9 @@ def _draw(lisle, engine, depsgraph, size, note):
     shot = _native_shot(lisle, engine, depsgraph, frame_size, note, "vector" in wanted)
     settings, render = depsgraph.scene.lisle, depsgraph.scene.render
 
+    if render.threads_mode == "FIXED":
+        lisle.set_threads(render.threads)  # of no effect once anything was drawn in this process
+
     def progress(fraction):
         engine.update_progress(fraction)
         return not engine.test_break()
@@ -75,6 +78,10 @@ def _draw(lisle, engine, depsgraph, size, note):
             occlusion=settings.occlusion,
             lod_pixels=settings.lod,
             seed=settings.seed,
+            filter=settings.filter,
+            filter_width=settings.filter_width,
+            noise_threshold=settings.noise_threshold if settings.use_noise_threshold else 0.0,
+            time_limit_s=settings.time_limit or None,
             **options,
         )
     black = np.zeros((size[1], size[0], 1), np.float32)

@@ -38,6 +38,23 @@ class LISLE_RENDER_PT_sampling(LislePanel, bpy.types.Panel):
         layout.prop(settings, "seed")
 
 
+class LISLE_RENDER_PT_stop(LislePanel, bpy.types.Panel):
+    bl_label = "Stop Early"
+    bl_context = "render"
+    bl_parent_id = "LISLE_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, settings = self.split_layout(), context.scene.lisle
+        layout.active = settings.method != "REFERENCE"
+        row = layout.row(heading="Noise Threshold")
+        row.prop(settings, "use_noise_threshold", text="")
+        sub = row.row()
+        sub.active = settings.use_noise_threshold
+        sub.prop(settings, "noise_threshold", text="")
+        layout.prop(settings, "time_limit")
+
+
 class LISLE_RENDER_PT_shading(LislePanel, bpy.types.Panel):
     bl_label = "Fibers"
     bl_context = "render"
@@ -90,12 +107,18 @@ class LISLE_RENDER_PT_film(LislePanel, bpy.types.Panel):
     bl_context = "render"
 
     def draw(self, context):
-        self.split_layout().prop(context.scene.render, "film_transparent", text="Transparent")
+        layout, settings = self.split_layout(), context.scene.lisle
+        layout.prop(context.scene.render, "film_transparent", text="Transparent")
+        column = layout.column()
+        column.active = settings.method != "REFERENCE"
+        column.prop(settings, "filter")
+        column.prop(settings, "filter_width")
 
 
 PANELS = (
     LISLE_RENDER_PT_problem,
     LISLE_RENDER_PT_sampling,
+    LISLE_RENDER_PT_stop,
     LISLE_RENDER_PT_shading,
     LISLE_RENDER_PT_reference,
     LISLE_RENDER_PT_motion_blur,

@@ -1,5 +1,6 @@
 """Files of pictures, read back with other libraries."""
 
+import json
 import os
 import stat
 
@@ -105,3 +106,28 @@ def test_other_kinds_are_refused(tmp_path):
     with pytest.raises(lisle.InputError, match="bits"):
         picture().save(tmp_path / "picture.png", bits=32)
     assert not list(tmp_path.iterdir())
+
+
+def test_further_passes_are_in_the_file_with_their_manifest(renderer, camera, swatch, tmp_path):
+    scene = lisle.Scene(camera, ambient=(1, 1, 1))
+    scene.add(swatch, name="Wäsche", object_index=3, material_name="wool", material_index=7)
+    wanted = [name for name in lisle.FURTHER_PASSES if name != "vector"]
+    image = renderer.render(scene, samples=2, passes=wanted)
+    assert set(wanted) <= set(image)
+    path = tmp_path / "a.exr"
+    image.save(path)
+    openexr = pytest.importorskip("OpenEXR")
+    with openexr.File(str(path), separate_channels=True) as file:
+        channels, header = file.channels(), dict(file.header())
+        np.testing.assert_array_equal(channels["position.X"].pixels, image["position"][..., 0])
+        np.testing.assert_array_equal(channels["CryptoMaterial00.G"].pixels, image["crypto_material"][..., 1])
+        np.testing.assert_array_equal(channels["shadow"].pixels, image["shadow"])
+    covered = image["depth"] < 1e9
+    assert (image["object_index"][covered] == 3).all() and (image["material_index"][covered] == 7).all()
+    manifests = {header[k.replace("manifest", "name")]: json.loads(header[k]) for k in header if "manifest" in k}
+    assert manifests.keys() == {"CryptoObject", "CryptoMaterial"}
+    (ident,) = manifests["CryptoObject"].values()
+    assert manifests["CryptoObject"].keys() == {"Wäsche"}
+    number = np.array([int(ident, 16)], np.uint32).view(np.float32)[0]
+    assert (image["crypto_object"][covered][:, 0] == number).all()
+    np.testing.assert_allclose(image["crypto_object"][..., 1], image["alpha"], atol=1e-6)

@@ -211,3 +211,79 @@ def test_adapters(renderer):
     names = [adapter.name for adapter in lisle.adapters()]
     assert renderer.adapter.name in names
     assert lisle.Renderer(renderer.adapter.name[:5].upper()).adapter.name.startswith(renderer.adapter.name[:5])
+
+
+def test_filters_blur_by_their_width(draw):
+    def roughness(**options):
+        return np.abs(np.diff(draw(samples=64, **options)["alpha"], axis=1)).sum()
+
+    sharp = roughness(filter_width=0.01)
+    assert roughness() < 0.97 * sharp
+    assert roughness(filter="box", filter_width=3.0) < 0.8 * sharp
+    assert roughness(filter="gaussian", filter_width=6.0) < roughness(filter="gaussian") < 1.02 * sharp
+    with pytest.raises(lisle.InputError, match='filter: "sinc" is none of'):
+        draw(filter="sinc")
+
+
+def test_a_picture_stops_when_it_is_smooth(draw):
+    rough = draw(samples=256, noise_threshold=1.0)
+    smooth = draw(samples=256, noise_threshold=0.03)
+    assert rough.statistics["samples"] == 16
+    assert rough.statistics["samples"] < smooth.statistics["samples"]
+    assert draw(samples=24, noise_threshold=1e-6).statistics["samples"] == 24
+    # It is the picture of as many samples.
+    alone = draw(samples=16)
+    for name in alone:
+        np.testing.assert_array_equal(rough[name], alone[name], err_msg=name)
+    # And the threshold says how far it is from the end.
+    end = draw(samples=1024)["combined"]
+    covered = end[..., 3] > 0
+
+    def error(image):
+        relative = (image["combined"] - end) / np.sqrt(np.maximum(end, 1e-3))
+        return float(np.sqrt((relative[covered] ** 2).mean()))
+
+    assert error(smooth) < 0.03 < 3 * error(rough)
+    with pytest.raises(lisle.InputError, match="noise_threshold"):
+        draw(noise_threshold=-1)
+
+
+def test_a_picture_stops_in_time(draw):
+    image = draw(samples=65536, time_limit_s=0.5)
+    assert 1 <= image.statistics["samples"] < 65536
+    assert np.isfinite(image["combined"]).all() and image["alpha"].max() == pytest.approx(1)
+    with pytest.raises(lisle.InputError, match="time_limit_s"):
+        draw(time_limit_s=0)
+
+
+def test_seeds_change_the_noise_alone(draw):
+    first, second, again = (draw(samples=16, seed=seed) for seed in (1, 2, 1))
+    np.testing.assert_array_equal(first["combined"], again["combined"])
+    assert (first["combined"] != second["combined"]).any()
+    assert first["combined"].mean() == pytest.approx(second["combined"].mean(), rel=0.02)
+    np.testing.assert_array_equal(first["depth"], second["depth"])
+
+
+def test_moving_yarns_and_cameras_are_lists(renderer, swatch, camera):
+    shifted = swatch.with_points(swatch.points + np.float32([0.01, 0, 0]))
+    options = {"samples": 8, "ambient": (1, 1, 1)}
+    still = renderer.render(swatch, camera=camera, **options)
+    moving = renderer.render([swatch, shifted], camera=camera, **options)
+    assert (moving["alpha"] > 0).sum() > 1.05 * (still["alpha"] > 0).sum()
+    same = renderer.render([swatch, swatch], camera=[camera, camera], **options)
+    np.testing.assert_array_equal(same["combined"], still["combined"])
+    other = lisle.knit_swatch(courses=6, wales=6)
+    for what, cameras, words in (
+        ([swatch, other], camera, "another rest shape"),
+        ([swatch, shifted], [camera] * 3, "time steps: there are 2, expected 3"),
+    ):
+        with pytest.raises(lisle.InputError, match=words):
+            renderer.render(what, camera=cameras, **options)
+    with pytest.raises(lisle.InputError, match="both or neither"):
+        renderer.render(swatch, camera=camera, before=shifted)
+    ends = {"before": swatch, "after": shifted}
+    vectors = renderer.render(swatch, camera=camera, passes=["vector"], **ends, **options)["vector"]
+    covered = still["depth"] < 1e9
+    assert np.abs(vectors[..., :2]).max() < 0.01 and (vectors[covered][:, 2] < -0.5).all()
+    with pytest.raises(lisle.InputError, match="'beauty' is none of position"):
+        renderer.render(swatch, camera=camera, passes=["beauty"])

@@ -1,6 +1,7 @@
 //! A picture: tiles, samples, and the passes of a sample in order.
 
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
 
@@ -13,6 +14,7 @@ use crate::lights::{self, Extent, LightSample};
 use crate::mesh_raster::{MeshPipelines, MeshTargets};
 use crate::meshes::{MeshBuffers, MeshPlaces};
 use crate::motion::{Moment, Motion, Neighbour};
+use crate::noise::Noise;
 use crate::pipelines::{Bindings, Pipelines};
 use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
 use crate::shader::{Film, Pass};
@@ -343,7 +345,7 @@ impl<'a> Recorder<'a> {
                 plane_shadow: planes.shadow,
                 ..Default::default()
             },
-            filter: PixelFilter::new(settings.filter_width),
+            filter: PixelFilter::new(settings.filter, settings.filter_width),
             timer: Timer::new(gpu),
             static_lights: false,
             fiber_segments: 0,
@@ -461,18 +463,33 @@ impl<'a> Recorder<'a> {
         image.aovs = wanted.iter().map(|aov| (*aov, vec![0.0; aov.channels() * count])).collect();
         let tiles = tiles(region, tile_pixels(self.gpu, &self.input.planes));
         let samples = self.input.settings.samples;
+        let (start, mut fewest) = (Instant::now(), samples);
         let total = samples.saturating_mul(tiles.len() as u32);
         for (number, tile) in tiles.iter().enumerate() {
+            let deadline = self.input.settings.time_limit_s.map(|limit| {
+                let share = (number + 1) as f64 / tiles.len() as f64;
+                start + Duration::from_secs_f64((limit * share).min(1e9))
+            });
+            let mut noise = Noise::new(self.input.settings.noise_threshold);
+            let mut drawn = 0;
             for sample in 0..samples {
                 self.sample(*tile, sample)?;
+                drawn = sample + 1;
                 let done = number as u32 * samples + sample + 1;
                 if progress(Progress::Samples { done, total }).is_break() {
                     return Err(Error::Cancelled);
                 }
+                let is_late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
+                let film = || self.read(&[(&self.frame.film[0], 16 * u64::from(tile[2]) * u64::from(tile[3]))]);
+                if is_late || (drawn < samples && noise.wants(drawn) && noise.is_low(drawn, &film()?)) {
+                    break;
+                }
             }
-            self.read_tile(*tile, [left, top], &mut image)?;
+            fewest = fewest.min(drawn);
+            self.read_tile(*tile, [left, top], drawn, &mut image)?;
         }
         image.statistics = Statistics {
+            samples: fewest,
             adapter: self.gpu.info.name.clone(),
             segments: self.moment.draws.real_segments,
             fiber_segments: self.fiber_segments,
@@ -751,7 +768,7 @@ impl<'a> Recorder<'a> {
             .into()
     }
 
-    fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], image: &mut Image) -> Result<(), Error> {
+    fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], samples: u32, image: &mut Image) -> Result<(), Error> {
         let [left, top, width, height] = tile;
         let pixels = width as usize * height as usize;
         let bytes = 16 * pixels as u64;
@@ -768,7 +785,6 @@ impl<'a> Recorder<'a> {
         };
         let planes = aov::Tile { planes: self.input.planes, words: &words, pixels };
         let ids = self.matte_ids();
-        let samples = self.input.settings.samples;
         let scale = 1.0 / samples as f32;
         let direction = |v: [f32; 4]| {
             // Background samples pull the mean towards zero; its direction is that of the surface.

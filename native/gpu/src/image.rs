@@ -29,6 +29,8 @@ impl Image {
 /// Work done for a picture.
 #[derive(Clone, Debug, Default)]
 pub struct Statistics {
+    /// Samples of each pixel; the fewest, if tiles stopped by themselves.
+    pub samples: u32,
     /// Adapter that drew it.
     pub adapter: String,
     /// Segments of yarn in the scene, instances counted each.

@@ -13,6 +13,7 @@ mod lights;
 mod mesh_raster;
 mod meshes;
 mod motion;
+mod noise;
 mod pipelines;
 mod renderer;
 mod scene;
@@ -25,6 +26,7 @@ pub use aov::Aov;
 pub use device::{AdapterInfo, adapters};
 pub use error::Error;
 pub use image::{Image, Statistics};
+pub use lisle_core::sampling::Filter;
 pub use lisle_core::scene::{
     Camera, Cone, Environment, EnvironmentImage, Labels, Lens, Light, Mesh, MeshKind, Object, Scene, Shading, Triangles,
 };

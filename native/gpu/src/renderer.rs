@@ -213,6 +213,12 @@ fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
     if settings.samples == 0 {
         return invalid("samples", "0: expected at least 1".into());
     }
+    if !(settings.noise_threshold.is_finite() && settings.noise_threshold >= 0.0) {
+        return invalid("noise_threshold", format!("{}: expected 0 or more", settings.noise_threshold));
+    }
+    if settings.time_limit_s.is_some_and(|limit| !(limit.is_finite() && limit > 0.0)) {
+        return invalid("time_limit_s", "expected a number of seconds above 0".into());
+    }
     for (what, value) in [("lod_pixels", settings.lod_pixels), ("filter_width", settings.filter_width)] {
         if !(0.0..=100.0).contains(&value) {
             return invalid(what, format!("{value}: expected 0 to 100 pixels"));

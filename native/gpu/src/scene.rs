@@ -2,7 +2,7 @@
 
 use lisle_core::scene::Shading;
 
-use crate::Aov;
+use crate::{Aov, Filter};
 
 /// Which ambient occlusion [WuYuksel2018 §4.2].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,8 +21,14 @@ pub struct Settings {
     pub size: [u32; 2],
     /// Part of the frame to draw: left, top, width, height in pixels, from the top left; `None` for all.
     pub region: Option<[u32; 4]>,
-    /// Jittered samples per pixel, ≥ 1.
+    /// Jittered samples per pixel, ≥ 1; the most, if one of the next two stops earlier.
     pub samples: u32,
+    /// Stops when the picture's noise is down to this, from 16 samples on; 0 for never. Noise is estimated from the two halves of the
+    /// samples so far: half their difference, relative to the square root of the colour, as root of the mean square over all pixels that show
+    /// anything. Each tile of the picture stops by itself.
+    pub noise_threshold: f32,
+    /// Stops when so many seconds have passed, after one sample at least; `None` for never. The picture then depends on the machine's speed.
+    pub time_limit_s: Option<f64>,
     /// Shading model.
     pub shading: Shading,
     /// Photons by which light scattered more than once is precomputed for each yarn and material, with physical shading; 0 leaves it out.
@@ -33,7 +39,9 @@ pub struct Settings {
     pub lod_pixels: f32,
     /// Leaves the background transparent, otherwise it is the ambient radiance.
     pub transparent: bool,
-    /// Width of the Blackman–Harris pixel filter, pixels; 0 for a point sample at the centre of each pixel.
+    /// Shape of the pixel filter.
+    pub filter: Filter,
+    /// Its width, pixels; 0 for a point sample at the centre of each pixel.
     pub filter_width: f32,
     /// Texels along one side of a shadow map.
     pub shadow_resolution: u32,
@@ -59,11 +67,14 @@ impl Default for Settings {
             size: [1280, 960],
             region: None,
             samples: 16,
+            noise_threshold: 0.0,
+            time_limit_s: None,
             shading: Shading::Physical,
             transport_photons: 500_000,
             occlusion: Occlusion::Distance,
             lod_pixels: 1.0,
             transparent: true,
+            filter: Filter::default(),
             filter_width: 1.5,
             shadow_resolution: 2048,
             seed: 0,

@@ -9,7 +9,7 @@ Lengths are metres (or the file's unit, where it has none), right-handed, Z up; 
 >>> image.save("glove.png")
 """
 
-from ._native import Adapter, Yarns, __version__, adapters
+from ._native import Adapter, Yarns, __version__, adapters, set_threads
 from .camera import Camera
 from .environment import Environment
 from .errors import Cancelled, DeviceError, Error, InputError
@@ -57,6 +57,7 @@ __all__ = [
     "knit_swatch",
     "knit_tube",
     "load",
+    "set_threads",
     "sweater",
     "woven_swatch",
 ]

@@ -36,6 +36,7 @@ __all__ = [
     "reference",
     "save_exr",
     "save_png",
+    "set_threads",
     "sweater",
     "woven_flat",
     "yarn_preset",
@@ -207,6 +208,9 @@ def save_png(path: Path, combined: npt.NDArray[np.float32], bits: int) -> None: 
 def save_exr(
     path: Path, passes: Sequence[tuple[Sequence[str], npt.NDArray[Any]]], metadata: Mapping[str, str]
 ) -> None: ...
+def set_threads(count: int) -> bool:
+    """Threads for all that runs on the processor: tables and the path tracer. False once such work has begun."""
+
 def cryptomatte_hash(name: str) -> int: ...
 def check_yarn(yarn: Yarn) -> None: ...
 def yarn_presets() -> tuple[str, ...]: ...

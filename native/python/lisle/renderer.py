@@ -60,7 +60,10 @@ class Renderer:
         region: tuple[int, int, int, int] | None = None,
         transparent: bool = True,
         lod_pixels: float = 1.0,
+        filter: str = "blackman-harris",
         filter_width: float = 1.5,
+        noise_threshold: float = 0.0,
+        time_limit_s: float | None = None,
         shadow_resolution: int = 2048,
         seed: int = 0,
         first_sample: int = 0,
@@ -85,7 +88,7 @@ class Renderer:
             ambient: constant radiance from everywhere, scene-linear.
             environment: radiance from everywhere, which is added to `ambient`; each sample takes a few directions.
             meshes: surfaces that hide yarn, throw shadows on it and take its own.
-            samples: jittered samples per pixel.
+            samples: jittered samples per pixel; the most, if one of the two below stops earlier.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
             transport_photons: photons by which light that is scattered more than once is precomputed for each yarn and
@@ -94,7 +97,12 @@ class Renderer:
             region: part of the frame to draw, x0, y0, x1, y1 in pixels from the bottom left, x1 and y1 exclusive.
             transparent: leaves the background transparent; otherwise it is that of ambient and environment.
             lod_pixels: fibers thinner than this are merged; 0 draws every fiber.
-            filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.
+            filter: of pixels: "blackman-harris", "gaussian" or "box".
+            filter_width: from one of its ends to the other, pixels; 0 for a point sample at the centre of each pixel.
+            noise_threshold: stops before `samples` when the noise is down to this, 0.01 for example; 0 for never. It is
+                half the difference between the two halves of the samples, relative to the square root of the colour,
+                as root of the mean square over what shows anything; looked at after 16, 32, 64 … samples.
+            time_limit_s: stops when so many seconds have passed. The picture then depends on the machine's speed.
             shadow_resolution: texels along one side of a shadow map, 16 to 16384.
             seed: of the sample sequence.
             first_sample: its number in that sequence: samples 0 to 7 and 8 to 15 are two halves of one picture of 16.
@@ -136,7 +144,10 @@ class Renderer:
                 "occlusion": occlusion,
                 "transparent": transparent,
                 "lod_pixels": lod_pixels,
+                "filter": filter,
                 "filter_width": filter_width,
+                "noise_threshold": noise_threshold,
+                "time_limit_s": time_limit_s,
                 "shadow_resolution": shadow_resolution,
                 "seed": seed,
                 "first_sample": first_sample,

@@ -23,6 +23,12 @@ pub fn detached<T: Send, E: Into<Failure> + Send>(
     }
 }
 
+/// Threads for all that runs on the processor from now on; whether they could still be set, which is before the first of such work.
+#[pyfunction]
+pub fn set_threads(count: usize) -> bool {
+    rayon::ThreadPoolBuilder::new().num_threads(count).build_global().is_ok()
+}
+
 /// Python's word in a long call: the progress callback, and Ctrl-C.
 pub struct Listener {
     callback: Option<Py<PyAny>>,

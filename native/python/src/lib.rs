@@ -37,6 +37,8 @@ mod native {
     #[pymodule_export]
     use super::fabric::{knit_flat, knit_mesh, knit_sleeve, knit_tube, sweater, woven_flat};
     #[pymodule_export]
+    use super::gil::set_threads;
+    #[pymodule_export]
     use super::load::load;
     #[pymodule_export]
     use super::material::{check_material, material_preset, material_presets};

@@ -125,6 +125,7 @@ fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'
         milliseconds.set_item(pass, time)?;
     }
     let result = PyDict::new(py);
+    result.set_item("samples", statistics.samples)?;
     result.set_item("adapter", &statistics.adapter)?;
     result.set_item("segments", statistics.segments)?;
     result.set_item("fiber_segments", statistics.fiber_segments)?;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
-use lisle_gpu::{Aov, Camera, Cone, Labels, Lens, Light, Object, Occlusion, Scene, Settings, Shading};
+use lisle_gpu::{Aov, Camera, Cone, Filter, Labels, Lens, Light, Object, Occlusion, Scene, Settings, Shading};
 use pyo3::prelude::*;
 
 use crate::environment::EnvironmentFields;
@@ -63,7 +63,10 @@ pub struct SettingsItems {
     occlusion: String,
     transparent: bool,
     lod_pixels: f32,
+    filter: String,
     filter_width: f32,
+    noise_threshold: f32,
+    time_limit_s: Option<f64>,
     shadow_resolution: u32,
     seed: u32,
     first_sample: u32,
@@ -189,6 +192,15 @@ impl SettingsItems {
             "table" => Occlusion::Table,
             other => return Err(Failure::Input(format!("occlusion: {other:?} is neither \"distance\" nor \"table\""))),
         };
+        let filter = match self.filter.as_str() {
+            "blackman-harris" => Filter::BlackmanHarris,
+            "gaussian" => Filter::Gaussian,
+            "box" => Filter::Box,
+            other => {
+                let known = "\"blackman-harris\", \"gaussian\" and \"box\"";
+                return Err(Failure::Input(format!("filter: {other:?} is none of {known}")));
+            }
+        };
         let aov = |name: &String| {
             let known = Aov::ALL.into_iter().find(|aov| aov.name() == name);
             known.ok_or_else(|| Failure::Input(format!("passes: {name:?} is no pass that can be asked for")))
@@ -203,7 +215,10 @@ impl SettingsItems {
             occlusion,
             transparent: self.transparent,
             lod_pixels: self.lod_pixels,
+            filter,
             filter_width: self.filter_width,
+            noise_threshold: self.noise_threshold,
+            time_limit_s: self.time_limit_s,
             shadow_resolution: self.shadow_resolution,
             seed: self.seed,
             first_sample: self.first_sample,

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use lisle_core::sampling::PixelFilter;
+use lisle_core::sampling::{Filter, PixelFilter};
 use lisle_core::scene::Scene;
 use lisle_core::view::View;
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ impl Reference {
         let view = View::new(&scene.camera, settings.size)?;
         let world = World::new(scene, settings.shading, settings.chord_error, progress)?;
         let digest = digest(scene, settings, &world);
-        let filter = PixelFilter::new(settings.filter_width);
+        let filter = PixelFilter::new(Filter::default(), settings.filter_width);
         Ok(Self { world, view, filter, settings: settings.clone(), region, digest })
     }
 

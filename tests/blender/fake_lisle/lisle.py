@@ -211,6 +211,11 @@ class Image(dict):
         return {f"cryptomatte/{name}": layer_prefix + layer for name, layer in layers.items() if name in self}
 
 
+def set_threads(count):
+    assert count > 0
+    return True
+
+
 class Renderer:
     adapter = SimpleNamespace(name="a stand-in, no GPU")
     _NAME = "render"

@@ -9,6 +9,7 @@ from typing import TypedDict
 from .._native import Yarns
 from ..environment import Environment
 from ..errors import InputError
+from ..image import FURTHER_PASSES
 from ..lights import Sun
 from ..loading import USD_SUFFIXES, load
 from ..material import Material
@@ -71,6 +72,49 @@ def lighting(arguments: argparse.Namespace) -> Lighting:
         return Lighting(lights=[SUN], ambient=AMBIENT, environment=None)
     environment = Environment(arguments.environment, radians(arguments.environment_rotation))
     return Lighting(lights=[], ambient=(0.0, 0.0, 0.0), environment=environment)
+
+
+def add_threads(parser: argparse.ArgumentParser) -> None:
+    """What runs on the processor."""
+    parser.add_argument(
+        "-t",
+        "--threads",
+        type=at_least_one,
+        metavar="N",
+        help="on the processor, not the graphics adapter (default: all)",
+    )
+
+
+def add_film(parser: argparse.ArgumentParser) -> None:
+    """How samples become a picture, and which passes it has."""
+    add = parser.add_argument
+    add("--seed", type=whole, default=0, metavar="N", help="of the sample sequence (default 0)")
+    add("--filter", choices=("blackman-harris", "gaussian", "box"), default="blackman-harris", help="pixel filter")
+    add("--filter-width", type=positive, default=1.5, metavar="PX", help="of the pixel filter (default 1.5)")
+    add(
+        "--noise-threshold",
+        type=positive,
+        default=0.0,
+        metavar="E",
+        help="stops before all samples when the noise is down to this, such as 0.01 (default: never)",
+    )
+    add("--time-limit", type=positive, metavar="S", help="stops when a picture has taken so many seconds")
+    add(
+        "--passes",
+        type=passes,
+        default=(),
+        metavar="P,P",
+        help=f"further passes in an .exr: {', '.join(name for name in FURTHER_PASSES if name != 'vector')}",
+    )
+
+
+def passes(text: str) -> tuple[str, ...]:
+    """Names with commas between them."""
+    names = tuple(text.split(","))
+    for name in names:
+        if name not in FURTHER_PASSES or name == "vector":
+            raise argparse.ArgumentTypeError(f"{name!r} is no pass that can be asked for")
+    return names
 
 
 def add_view(parser: argparse.ArgumentParser) -> None:

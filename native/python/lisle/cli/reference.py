@@ -3,11 +3,12 @@
 import argparse
 from pathlib import Path
 
+from .._native import set_threads
 from ..camera import Camera
 from ..material import Material
 from ..reference import Reference
 from ..yarn import Yarn
-from .options import add_input, add_picture, at_least_one, check_output, lighting, open_still, whole
+from .options import add_input, add_picture, add_threads, at_least_one, check_output, lighting, open_still, whole
 from .progress import Bar
 
 
@@ -30,6 +31,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
     )
     add("--seed", type=whole, default=0, metavar="N", help="of all random numbers (default 0)")
     add("--checkpoint", type=Path, metavar="FILE", help="keeps the work here, and goes on with it if it is there")
+    add_threads(parser)
     add("--frame", type=float, metavar="F", help="time code of an animated USD file (default: first)")
     parser.set_defaults(run=run)
 
@@ -38,6 +40,8 @@ def run(arguments: argparse.Namespace) -> None:
     """Draws what the command line says."""
     output = arguments.output
     check_output(output, (".png", ".exr"), "picture")
+    if arguments.threads is not None:
+        set_threads(arguments.threads)
     first, yarns = open_still(arguments.input, arguments.yarn_radius, arguments.frame)
     with Bar(1) as bar:
         bar.begin(0, output.name)

@@ -6,14 +6,24 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from .._native import Yarns
+from .._native import Yarns, set_threads
 from ..camera import Camera
 from ..errors import InputError
 from ..loading import load
 from ..material import Material
 from ..renderer import Renderer
 from ..yarn import Yarn
-from .options import add_input, add_picture, check_output, frame_range, lighting, open_animation, whole
+from .options import (
+    add_film,
+    add_input,
+    add_picture,
+    add_threads,
+    check_output,
+    frame_range,
+    lighting,
+    open_animation,
+    whole,
+)
 from .progress import Bar
 
 
@@ -33,6 +43,8 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         metavar="N",
         help="precision of light that is scattered more than once, 0 for none (default 500000)",
     )
+    add_film(parser)
+    add_threads(parser)
     parser.add_argument("--adapter", metavar="NAME", help="a part of an adapter's name, see `lisle devices`")
     frames = parser.add_mutually_exclusive_group()
     frames.add_argument("--frame", type=float, metavar="F", help="time code of an animated USD file (default: first)")
@@ -46,6 +58,10 @@ def run(arguments: argparse.Namespace) -> None:
     if frames is not None and "#" not in output.name:
         raise InputError(f"{output}: --frames needs a place for the frame's number, such as {output.stem}.####.png")
     check_output(output, (".png", ".exr"), "picture")
+    if arguments.passes and output.suffix.lower() != ".exr":
+        raise InputError(f"{output}: --passes needs an .exr, which holds them")
+    if arguments.threads is not None:
+        set_threads(arguments.threads)
 
     reference, pictures = open_input(arguments)
     camera = Camera.fit(reference, arguments.direction, arguments.size)
@@ -62,6 +78,12 @@ def run(arguments: argparse.Namespace) -> None:
                 camera=camera,
                 **light,
                 samples=arguments.samples,
+                seed=arguments.seed,
+                filter=arguments.filter,
+                filter_width=arguments.filter_width,
+                noise_threshold=arguments.noise_threshold,
+                time_limit_s=arguments.time_limit,
+                passes=arguments.passes,
                 shading=arguments.shading,
                 transport_photons=arguments.transport_photons,
                 progress=bar.update,
