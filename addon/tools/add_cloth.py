@@ -6,7 +6,7 @@ from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from .. import native
 from ..core.errors import LisleError
-from .yarn_objects import NewMaterial, yarn_data
+from .yarn_objects import NewMaterial, in_object_mode, yarn_data
 
 
 class AddCloth(NewMaterial, AddObjectHelper):
@@ -26,6 +26,10 @@ class AddCloth(NewMaterial, AddObjectHelper):
         subtype="DISTANCE",
         unit="LENGTH",
     )
+
+    @classmethod
+    def poll(cls, context):
+        return in_object_mode(cls, context)
 
     def make(self, lisle):
         """lisle.Yarns of the cloth."""

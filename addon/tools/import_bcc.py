@@ -10,7 +10,7 @@ from bpy_extras.object_utils import object_data_add
 
 from .. import native
 from ..core.errors import LisleError
-from .yarn_objects import NewMaterial, yarn_data
+from .yarn_objects import NewMaterial, in_object_mode, yarn_data
 
 
 class LISLE_OT_import_bcc(bpy.types.Operator, NewMaterial, ImportHelper):
@@ -41,6 +41,10 @@ class LISLE_OT_import_bcc(bpy.types.Operator, NewMaterial, ImportHelper):
         precision=5,
         subtype="DISTANCE",
     )
+
+    @classmethod
+    def poll(cls, context):
+        return in_object_mode(cls, context)
 
     def draw(self, _context):
         layout = self.layout

@@ -43,6 +43,14 @@ def curves_data(name, points, offsets, radii, kind="CATMULL_ROM"):
     return data
 
 
+def in_object_mode(operator, context):
+    """For operators that add objects: elsewhere Blender would add to what is being edited."""
+    if context.mode != "OBJECT":
+        operator.poll_message_set("Leave the mode you are in: objects are added in Object Mode")
+        return False
+    return True
+
+
 class NewMaterial:
     """For operators that add yarns: presets to choose, and the material made of them."""
 

@@ -73,6 +73,24 @@ def test_a_chart_with_other_letters_is_refused(lisle):
     assert len(bpy.data.objects) == before and not bpy.data.hair_curves
 
 
+def test_objects_are_added_in_object_mode_alone(lisle, tmp_path):
+    import bpy
+
+    bpy.ops.mesh.primitive_grid_add()
+    bpy.ops.object.mode_set(mode="EDIT")
+    before = len(bpy.data.hair_curves)
+    for add, arguments in (
+        (bpy.ops.lisle.add_knit_swatch, {}),
+        (bpy.ops.lisle.add_knit_tube, {}),
+        (bpy.ops.lisle.add_woven_swatch, {}),
+        (bpy.ops.lisle.import_bcc, {"filepath": str(tmp_path / "a.bcc")}),
+        (bpy.ops.lisle.knit_from_mesh, {}),
+    ):
+        with pytest.raises(RuntimeError, match="poll"):
+            add(**arguments)
+    assert len(bpy.data.hair_curves) == before
+
+
 def test_adding_can_be_undone(lisle):
     import bpy
 

@@ -19,7 +19,6 @@ import random
 chance = random.Random(SEED)
 scene = bpy.context.scene
 def edit():
-    bpy.ops.ed.undo_push()
     yarn = bpy.data.objects.get('Yarn')
     if yarn:
         yarn.location = [chance.uniform(-1, 1) for _ in range(3)]
@@ -27,11 +26,11 @@ def undo():
     if bpy.ops.ed.undo.poll():
         operator(bpy.ops.ed.undo)
 def add():
-    if len(scene.objects) < 8:
+    if len(scene.objects) < 8 and bpy.context.mode == 'OBJECT':
         operator(bpy.ops.lisle.add_knit_swatch, courses=chance.randint(2, 9), wales=chance.randint(2, 9),
                  yarn_radius=0.05)
 def weave():
-    if len(scene.objects) < 8:
+    if len(scene.objects) < 8 and bpy.context.mode == 'OBJECT':
         operator(bpy.ops.lisle.add_woven_swatch, weave=chance.choice(['plain', 'satin-5']), warp=chance.randint(2, 20),
                  weft=chance.randint(2, 20), yarn_radius=0.05, use_weft_fiber=chance.random() < 0.5)
 def knit_mesh():
@@ -45,7 +44,7 @@ def bend_mesh():
             obj.data.update()
 def remove():
     swatches = [obj for obj in scene.objects if obj.name.startswith(('Knit', 'Woven', 'Grid'))]
-    if swatches:
+    if swatches and bpy.context.mode == 'OBJECT':
         bpy.data.objects.remove(chance.choice(swatches))
 def purge():
     operator(bpy.ops.outliner.orphans_purge, do_recursive=True)
@@ -89,6 +88,8 @@ def resize():
     operator(bpy.ops.screen.screen_full_area)
 acts = [edit, edit, undo, undo, add, weave, knit_mesh, bend_mesh, remove, remove, purge, turn, turn, turn,
         through_camera, shade, engine, overlay, frame, mode, material, samples, quad, render, reference, resize]
+# Blender can undo what it was told of, as its own operators do when a user calls them.
+told = {edit, add, weave, knit_mesh, bend_mesh, remove, purge, mode, material}
 """
 
 STEP = """
@@ -98,6 +99,8 @@ try:
     act()
 except RuntimeError as error:
     print('soak:', act.__name__, str(error).strip())
+if act in told:
+    bpy.ops.ed.undo_push(message=act.__name__)
 answer = act.__name__
 """
 
