@@ -107,6 +107,9 @@ class Layout:
     def label(self, text="", icon="NONE"):
         self.texts.append(text)
 
+    def template_icon_view(self, owner, name, **_):
+        self.texts.append(owner.bl_rna.properties[name].name)
+
 
 def draw(panel, context):
     class Drawn:

@@ -91,7 +91,7 @@ def test_what_is_no_mesh_is_named(arguments, message):
 
 
 def test_a_scene_takes_meshes_alone(renderer, yarns):
-    with pytest.raises(lisle.InputError, match="mesh 0: expected a lisle.Mesh"):
+    with pytest.raises(lisle.InputError, match=r"mesh 0: expected a lisle\.Mesh"):
         lisle.Scene(from_above(), meshes=[SQUARE])
     scene = lisle.Scene(from_above(), [lisle.Sun(direction=(0, 0, -1))], meshes=[square()])
     assert set(np.unique(renderer.render(scene, samples=1)["object_id"])) == {0, 1}
