@@ -43,7 +43,7 @@ fn describe(adapter: &wgpu::Adapter) -> AdapterInfo {
 }
 
 fn enumerate() -> Vec<wgpu::Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
     // GPUs before software, stable within a kind.
     adapters.sort_by_key(|adapter| match adapter.get_info().device_type {
