@@ -94,7 +94,8 @@ class MeshKnit:
 
     def _mean(self, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
         corners: npt.NDArray[np.float64] = np.asarray(values, np.float64)[self.vertices]
-        return (self.weights[:, :, None] * corners).sum(axis=1)
+        mean: npt.NDArray[np.float64] = (self.weights[:, :, None] * corners).sum(axis=1)
+        return mean
 
 
 def knit_on_mesh(
@@ -132,7 +133,8 @@ def knit_on_mesh(
 
 def _unit(vectors: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    unit: npt.NDArray[np.float64] = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    return unit
 
 
 def sweater(points: int = 200_000) -> Yarns:
