@@ -92,6 +92,7 @@ class LISLE_OT_knit_from_mesh(KnitPattern, NewMaterial, bpy.types.Operator):
         follow(obj, mesh_object, len(positions))
         if self.hide_mesh:
             mesh_object.hide_render, mesh_object.display_type = True, "WIRE"
+            mesh_object.lisle.mesh_kind = "INVISIBLE"
         unequal = [modifier.name for modifier in mesh_object.modifiers if _differs_in_pictures(modifier)]
         if unequal:
             self.report(

@@ -132,6 +132,7 @@ def test_a_frame_alone_is_the_same_as_in_the_animation(lisle, tmp_path):
     )
     obj = knit(yarn_radius=0.1)
     assert mesh_object.hide_render and mesh_object.display_type == "WIRE"
+    assert mesh_object.lisle.mesh_kind == "INVISIBLE"
     sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
     sun.data.energy = 3
     scene = bpy.context.scene
