@@ -44,7 +44,7 @@ struct Frame {
     padding_4: u32,
     lod_pixels: f32,
     light_count: u32,
-    physical: u32,
+    padding_5: u32,
     occlusion_table: u32,
     ambient: vec3f,
     shadow_resolution: u32,
@@ -60,8 +60,7 @@ struct Frame {
     origin: vec2u,
     // Threads that share a segment's cores; a power of two.
     core_parts: u32,
-    // Whether light scattered more than once is added.
-    multiple: u32,
+    padding_6: u32,
 }
 
 // One yarn object, or one instance of it.

@@ -24,7 +24,7 @@ fn fiber_normal(tangent: vec3f, side: vec3f, view: vec3f, offset: f32) -> vec3f 
 
 // What a fiber makes of even light: its ambient term.
 fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
-    if frame.physical == 1u {
+    if PHYSICAL {
         return physical_ambient(material, ambient_factors(material, sin_theta_o));
     }
     return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0));
@@ -34,7 +34,7 @@ fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
 fn reflected_once(material: Material, surface: Surface, direction: vec3f, view: vec3f) -> Reflected {
     let angles = fiber_angles(surface.tangent, direction, view);
     let cos_normal = dot(surface.normal, direction);
-    if frame.physical == 1u {
+    if PHYSICAL {
         return physical_lobes(material, normalizers_at(material, angles.sin_theta_i), angles, cos_normal);
     }
     return simple_lobes(material, angles, cos_normal);
@@ -70,7 +70,7 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
         let by_yarns = (1.0 - shadow.open - shadow.solid) * (1.0 - yarn.through_circle);
         let open = 1.0 - shadow.solid - by_yarns;
         around.open += share * open;
-        if frame.multiple == 1u {
+        if MULTIPLE {
             let scattered = transport_ambient(transport, seen.section, direction) * hidden;
             around.sky += (share * open) * scattered;
             around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
@@ -100,7 +100,7 @@ fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, t
     // Meshes let nothing through.
     let blocked = 1.0 - shadow.open - shadow.solid;
     var spread = vec3f(0.0);
-    if frame.multiple == 1u {
+    if MULTIPLE {
         // Through air it is spread as well, so that all of the way counts.
         spread = blocked * max(pow(through, vec3f(yarns_above)) - pow(yarn.through_circle, yarns_above), vec3f(0.0));
     }
@@ -142,7 +142,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     // Light scattered more than once comes from the directions in which fibers are. A point that is seen has fewer of them than others there,
     // but as many behind, where light comes from that goes straight on.
     var hidden: vec3f;
-    if frame.multiple == 1u {
+    if MULTIPLE {
         transport = transport_point(draws[draw].transport, section, view);
         albedo = yarn_albedo(draws[draw].transport);
         let around_it = (1.0 - own_sky) / max(1.0 - self_occlusion(yarn, section), 0.01);
@@ -166,7 +166,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
         shaded.once.diffuse += reflected.diffuse * incident.irradiance * (own.point * passing.straight);
         shaded.arriving += luminance(straight);
         shaded.shining += luminance(incident.irradiance);
-        if frame.multiple == 1u {
+        if MULTIPLE {
             // TT takes in what other yarns scatter as far as that half space is behind the fiber.
             let behind = 0.5 - 0.5 * dot(section_direction(section, incident.direction).unit, seen.view);
             shaded.scattered += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own.width / PI);
@@ -185,7 +185,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     }
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
     var sky = (even_lobes.around * own_sky + even_lobes.through * own_behind) * around.open;
-    if frame.multiple == 1u {
+    if MULTIPLE {
         sky += around.sky;
         for (var k = 0u; k < frame.sky_view_count; k++) {
             sky += around.yarns[k] * albedo.albedo * (CLOTH_OPEN * gain);

@@ -17,12 +17,10 @@ use crate::motion::{Moment, Motion, Neighbour};
 use crate::noise::Noise;
 use crate::pipelines::{Bindings, Pipelines};
 use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
-use crate::shader::{Film, Pass};
+use crate::shader::{Film, Pass, Resolve};
 use crate::timing::Timer;
 use crate::upload::{Draws, SceneBuffers, empty_storage};
-use crate::{
-    Aov, Environment, Error, Image, Labels, Object, Occlusion, Progress, Scene, Settings, Shading, Statistics,
-};
+use crate::{Aov, Environment, Error, Image, Labels, Object, Occlusion, Progress, Scene, Settings, Statistics};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
 pub(crate) const BLOCK: u32 = 256;
@@ -47,6 +45,7 @@ const DEPTH_BITS: std::ops::RangeInclusive<u32> = 18..=24;
 pub(crate) struct FrameInput<'a> {
     pub scene: &'a Scene,
     pub settings: &'a Settings,
+    pub resolve: Resolve,
     pub planes: Planes,
     pub buffers: &'a SceneBuffers,
     pub motion: &'a Motion<'a>,
@@ -324,8 +323,6 @@ impl<'a> Recorder<'a> {
                 depth_bits,
                 lod_pixels: settings.lod_pixels,
                 light_count: input.light_count(),
-                physical: u32::from(settings.shading == Shading::Physical),
-                multiple: u32::from(settings.photons() > 0),
                 occlusion_table: u32::from(settings.occlusion == Occlusion::Table),
                 ambient: scene.ambient,
                 shadow_resolution: frame.capacity.shadow_resolution,
@@ -653,22 +650,22 @@ impl<'a> Recorder<'a> {
             pipelines.record_visibility(self.gpu, &mut encoder, &bindings, targets, size, triangles);
         }
         encoder.clear_buffer(&self.frame.resolve_dispatch, 0, None);
-        let film = if self.input.planes.count > 0 { Film::Aovs } else { Film::Plain };
-        if film == Film::Aovs && self.uniform.first == 1 {
+        let resolve = self.input.resolve;
+        if resolve.film == Film::Aovs && self.uniform.first == 1 {
             encoder.clear_buffer(&self.frame.aovs, 0, None);
         }
         let (x, y) = fold((width * height).div_ceil(LANES));
         self.record(&mut encoder, Pass::Classify, |pass| pass.dispatch_workgroups(x, y, 1));
         if has_meshes {
-            self.record(&mut encoder, Pass::ResolveMeshes(film), |pass| pass.dispatch_workgroups(x, y, 1));
+            self.record(&mut encoder, Pass::ResolveMeshes(resolve), |pass| pass.dispatch_workgroups(x, y, 1));
         }
         if self.uniform.segment_count > 0 {
             let arguments = &self.frame.resolve_dispatch;
             self.record(&mut encoder, Pass::SizeLists, |pass| pass.dispatch_workgroups(1, 1, 1));
-            self.record(&mut encoder, Pass::ResolveFibers(film), |pass| {
+            self.record(&mut encoder, Pass::ResolveFibers(resolve), |pass| {
                 pass.dispatch_workgroups_indirect(arguments, 0)
             });
-            self.record(&mut encoder, Pass::ResolveCores(film), |pass| {
+            self.record(&mut encoder, Pass::ResolveCores(resolve), |pass| {
                 pass.dispatch_workgroups_indirect(arguments, 16)
             });
         }

@@ -67,7 +67,7 @@ shared! {
         padding_4: u32,
         lod_pixels: f32,
         light_count: u32,
-        physical: u32,
+        padding_5: u32,
         occlusion_table: u32,
         ambient: Vec3,
         shadow_resolution: u32,
@@ -79,7 +79,7 @@ shared! {
         padding: u32,
         origin: [u32; 2],
         core_parts: u32,
-        multiple: u32,
+        padding_6: u32,
     }
     Draw {
         render_from_object_x: Vec4,

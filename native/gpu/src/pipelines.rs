@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::Error;
 use crate::device::Gpu;
-use crate::shader::{Film, Pass, Store};
+use crate::shader::{Pass, Store};
 
 struct Pipeline {
     pipeline: wgpu::ComputePipeline,
@@ -42,8 +42,7 @@ impl Pipelines {
     pub fn new(gpu: &Gpu, wide: bool) -> Result<Self, Error> {
         let stores = if wide { vec![Store::Wide] } else { vec![Store::High, Store::Low] };
         let mut wanted = vec![Pass::Cull, Pass::Scan, Pass::Shadow];
-        let resolve = [Pass::ResolveFibers(Film::Plain), Pass::ResolveCores(Film::Plain)];
-        wanted.extend([Pass::Classify, Pass::SizeLists].into_iter().chain(resolve));
+        wanted.extend([Pass::Classify, Pass::SizeLists]);
         wanted.extend(stores.iter().flat_map(|store| [Pass::Fibers(*store), Pass::Cores(*store)]));
         let pipelines = Self { passes: Mutex::default(), stores };
         pipelines.ensure(gpu, &wanted)?;

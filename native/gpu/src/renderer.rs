@@ -14,7 +14,7 @@ use crate::mesh_raster::MeshPipelines;
 use crate::meshes::MeshBuffers;
 use crate::motion::{Motion, Neighbour};
 use crate::pipelines::Pipelines;
-use crate::shader::{Film, Pass};
+use crate::shader::{Film, Pass, Resolve};
 use crate::tables::TableCache;
 use crate::upload::SceneBuffers;
 use crate::{AdapterInfo, Aov, Error, Exposure, Image, Scene, Settings};
@@ -158,10 +158,11 @@ impl Renderer {
         let neighbours = neighbours.transpose()?;
         let moment = motion.at(&buffers, 0.5)?;
         let film = if planes.count > 0 { Film::Aovs } else { Film::Plain };
+        let resolve = Resolve { film, model: settings.model() };
         let wanted = [
-            (planes.count > 0, Pass::ResolveFibers(Film::Aovs)),
-            (planes.count > 0, Pass::ResolveCores(Film::Aovs)),
-            (!meshes.is_empty(), Pass::ResolveMeshes(film)),
+            (true, Pass::ResolveFibers(resolve)),
+            (true, Pass::ResolveCores(resolve)),
+            (!meshes.is_empty(), Pass::ResolveMeshes(resolve)),
             (neighbours.is_some(), Pass::Follow),
             (!motion.shapes.is_empty(), Pass::MoveKnots),
         ];
@@ -171,6 +172,7 @@ impl Renderer {
         let input = FrameInput {
             scene,
             settings,
+            resolve,
             planes,
             buffers: &buffers,
             motion: &motion,

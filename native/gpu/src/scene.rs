@@ -2,6 +2,8 @@
 
 use lisle_core::scene::Shading;
 
+use crate::shader::Model;
+
 use crate::{Aov, Filter};
 
 /// Which ambient occlusion [WuYuksel2018 §4.2].
@@ -58,6 +60,14 @@ impl Settings {
     /// Photons that are used.
     pub(crate) fn photons(&self) -> u32 {
         if self.shading == Shading::Physical { self.transport_photons } else { 0 }
+    }
+
+    pub(crate) fn model(&self) -> Model {
+        match self.shading {
+            Shading::Simple => Model::Simple,
+            Shading::Physical if self.photons() == 0 => Model::Physical,
+            Shading::Physical => Model::Multiple,
+        }
     }
 }
 

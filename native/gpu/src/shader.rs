@@ -62,6 +62,54 @@ pub enum Film {
     Aovs,
 }
 
+/// How fibers are shaded. Each has its own shaders: the software driver pays for both sides of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// Lambert and a highlight.
+    Simple,
+    /// R + TT, light scattered once.
+    Physical,
+    /// The same with light scattered more than once.
+    Multiple,
+}
+
+/// What a resolve pass is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Resolve {
+    pub film: Film,
+    pub model: Model,
+}
+
+impl Resolve {
+    #[cfg(test)]
+    pub const ALL: [Self; 6] = {
+        const fn of(film: Film, model: Model) -> Resolve {
+            Resolve { film, model }
+        }
+        [
+            of(Film::Plain, Model::Simple),
+            of(Film::Plain, Model::Physical),
+            of(Film::Plain, Model::Multiple),
+            of(Film::Aovs, Model::Simple),
+            of(Film::Aovs, Model::Physical),
+            of(Film::Aovs, Model::Multiple),
+        ]
+    };
+
+    fn files(self) -> [Files; 2] {
+        let film = match self.film {
+            Film::Plain => files!["passes/no_aov.wgsl"],
+            Film::Aovs => files!["passes/aov.wgsl"],
+        };
+        let model = match self.model {
+            Model::Simple => files!["passes/model_simple.wgsl"],
+            Model::Physical => files!["passes/model_physical.wgsl"],
+            Model::Multiple => files!["passes/model_multiple.wgsl"],
+        };
+        [film, model]
+    }
+}
+
 /// A compute pass; its entry point has the name of its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
@@ -72,9 +120,9 @@ pub enum Pass {
     Shadow,
     Classify,
     SizeLists,
-    ResolveFibers(Film),
-    ResolveCores(Film),
-    ResolveMeshes(Film),
+    ResolveFibers(Resolve),
+    ResolveCores(Resolve),
+    ResolveMeshes(Resolve),
     Follow,
     MoveKnots,
 }
@@ -88,27 +136,27 @@ pub enum Raster {
 
 impl Pass {
     #[cfg(test)]
-    pub const ALL: [Self; 19] = [
-        Self::Cull,
-        Self::Scan,
-        Self::Fibers(Store::Wide),
-        Self::Fibers(Store::High),
-        Self::Fibers(Store::Low),
-        Self::Cores(Store::Wide),
-        Self::Cores(Store::High),
-        Self::Cores(Store::Low),
-        Self::Shadow,
-        Self::Classify,
-        Self::SizeLists,
-        Self::ResolveFibers(Film::Plain),
-        Self::ResolveCores(Film::Plain),
-        Self::ResolveMeshes(Film::Plain),
-        Self::ResolveFibers(Film::Aovs),
-        Self::ResolveCores(Film::Aovs),
-        Self::ResolveMeshes(Film::Aovs),
-        Self::Follow,
-        Self::MoveKnots,
-    ];
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![
+            Self::Cull,
+            Self::Scan,
+            Self::Fibers(Store::Wide),
+            Self::Fibers(Store::High),
+            Self::Fibers(Store::Low),
+            Self::Cores(Store::Wide),
+            Self::Cores(Store::High),
+            Self::Cores(Store::Low),
+            Self::Shadow,
+            Self::Classify,
+            Self::SizeLists,
+            Self::Follow,
+            Self::MoveKnots,
+        ];
+        for resolve in Resolve::ALL {
+            all.extend([Self::ResolveFibers(resolve), Self::ResolveCores(resolve), Self::ResolveMeshes(resolve)]);
+        }
+        all
+    }
 
     pub fn entry_point(self) -> &'static str {
         match self {
@@ -134,10 +182,6 @@ impl Pass {
             Store::High => files!["passes/store_high.wgsl"],
             Store::Low => files!["passes/store_low.wgsl"],
         };
-        let film = |film| match film {
-            Film::Plain => files!["passes/no_aov.wgsl"],
-            Film::Aovs => files!["passes/aov.wgsl"],
-        };
         let parts: Vec<Files> = match self {
             Self::Cull => vec![SCENE, WORK, files!["passes/cull.wgsl"]],
             Self::Scan => vec![SCENE, WORK, files!["passes/scan.wgsl"]],
@@ -146,20 +190,28 @@ impl Pass {
             Self::Shadow => vec![SCENE, files!["math/capsule.wgsl", "passes/work.wgsl", "passes/shadow.wgsl"]],
             Self::Classify => vec![SCENE, WORK, KEYS, files!["passes/classify.wgsl"]],
             Self::SizeLists => vec![SCENE, WORK, files!["passes/film.wgsl", "passes/size_lists.wgsl"]],
-            Self::ResolveFibers(f) => {
-                vec![SCENE, WORK, RASTER, SHADING, film(f), files!["passes/resolve_fibers.wgsl"]]
+            Self::ResolveFibers(of) => {
+                let [film, model] = of.files();
+                vec![SCENE, WORK, RASTER, SHADING, film, model, files!["passes/resolve_fibers.wgsl"]]
             }
-            Self::ResolveCores(f) => vec![SCENE, WORK, RASTER, SHADING, film(f), files!["passes/resolve_cores.wgsl"]],
-            Self::ResolveMeshes(f) => vec![
-                SCENE,
-                WORK,
-                RASTER,
-                SHADING,
-                film(f),
-                files!["passes/background.wgsl", "passes/mesh_target.wgsl"],
-                MESHES,
-                files!["passes/resolve_meshes.wgsl"],
-            ],
+            Self::ResolveCores(of) => {
+                let [film, model] = of.files();
+                vec![SCENE, WORK, RASTER, SHADING, film, model, files!["passes/resolve_cores.wgsl"]]
+            }
+            Self::ResolveMeshes(of) => {
+                let [film, model] = of.files();
+                vec![
+                    SCENE,
+                    WORK,
+                    RASTER,
+                    SHADING,
+                    film,
+                    model,
+                    files!["passes/background.wgsl", "passes/mesh_target.wgsl"],
+                    MESHES,
+                    files!["passes/resolve_meshes.wgsl"],
+                ]
+            }
             Self::Follow => vec![SCENE, WORK, files!["passes/follow.wgsl"]],
             Self::MoveKnots => vec![files!["math/pack.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"]],
         };
@@ -248,11 +300,13 @@ pub struct Reflection {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const AOVS: Resolve = Resolve { film: Film::Aovs, model: Model::Multiple };
     use crate::layout::shared_structs;
 
     #[test]
     fn every_pass_is_valid() {
-        for pass in Pass::ALL {
+        for pass in Pass::all() {
             if let Err(message) = pass.reflect() {
                 panic!("{pass:?}:\n{message}");
             }
@@ -288,7 +342,7 @@ mod tests {
 
     #[test]
     fn shared_structs_match_the_shaders() {
-        let module = Pass::ResolveFibers(Film::Aovs).reflect().expect("valid").module;
+        let module = Pass::ResolveFibers(AOVS).reflect().expect("valid").module;
         assert_eq!(mismatches(&module), Vec::<String>::new());
     }
 
@@ -334,7 +388,7 @@ mod tests {
 
     #[test]
     fn shared_constants_match_the_shaders() {
-        let source = Pass::ResolveFibers(Film::Aovs).source();
+        let source = Pass::ResolveFibers(AOVS).source();
         assert_eq!(constants_apart(&source), (Vec::new(), shared_constants().len()));
         let other = source.replace("const HALF_WAY: f32 = 0.2;", "const HALF_WAY: f32 = 0.25;");
         assert_eq!(constants_apart(&other).0.len(), 1);
@@ -342,7 +396,7 @@ mod tests {
 
     #[test]
     fn a_moved_member_is_noticed() {
-        let source = Pass::ResolveFibers(Film::Aovs).source();
+        let source = Pass::ResolveFibers(AOVS).source();
         let moved =
             source.replace("    first_knot: u32,\n    knot_count: u32,", "    knot_count: u32,\n    first_knot: u32,");
         assert_ne!(source, moved);

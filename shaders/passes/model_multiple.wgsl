@@ -1,0 +1,4 @@
+// R + TT, light scattered any number of times.
+
+const PHYSICAL: bool = true;
+const MULTIPLE: bool = true;

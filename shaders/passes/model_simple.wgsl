@@ -1,0 +1,4 @@
+// Lambert and a highlight.
+
+const PHYSICAL: bool = false;
+const MULTIPLE: bool = false;
