@@ -5,6 +5,8 @@ A frame's picture must not depend on the frames drawn before it. So the rest sha
 drawn first: if the job is not at the reference frame, the scene is evaluated there, once per job, and back again.
 """
 
+import bpy
+
 from ..core.errors import RestShapeError
 from ..export.scene import collect
 from ..native import native_yarns
@@ -70,6 +72,7 @@ class RestShapes:
         """As `find`, for interactive views: no other frame is evaluated. Until the reference frame has been shown, the
         shape seen first counts as the one at rest; so does a new one whose points do not correspond to it.
         """
+        self._forget_removed()
         frame, subframe = scene.frame_current, scene.frame_subframe
         at_rest = {}
         for geometry in content.geometries.values():
@@ -80,6 +83,15 @@ class RestShapes:
                 self._curves[place] = geometry.curves
             at_rest[geometry.key] = geometry.curves if geometry.remeasure else self._curves[place]
         return at_rest
+
+    def _forget_removed(self):
+        """Drops what belongs to objects that are no more; a long session makes and removes many."""
+        names = {obj.name_full for obj in bpy.data.objects}
+        for place in [place for place in self._curves if place[-1][0] not in names]:
+            del self._curves[place]
+        # The painter's thread may add yarns meanwhile: list() is one step to it.
+        for key in [key for key in list(self._yarns) if key[0] not in names]:
+            self._yarns.pop(key, None)
 
     def yarns(self, lisle, key, current, at_rest):
         """`lisle.Yarns` at rest as `at_rest` and placed as `current`; the measured part is kept for the next frame."""

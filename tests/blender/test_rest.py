@@ -250,3 +250,24 @@ def test_two_view_layers_and_persistent_data(lisle, tmp_path):
         yarns = given.entries[0].yarns
         np.testing.assert_allclose(yarns.rest_points[0, 0], -3.3)
         np.testing.assert_allclose(yarns.points[0, 0], -3 * (1 + (index // 2 + 1) / 10), rtol=1e-6)
+
+
+def test_views_forget_the_rest_shapes_of_removed_objects(addon, lisle):
+    import bpy
+
+    rest_shapes = addon.engine.rest.RestShapes()
+
+    def see():
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        content = addon.export.scene.collect(lisle, depsgraph, lambda _: None)
+        at_rest = rest_shapes.known(bpy.context.scene, bpy.context.view_layer, content)
+        for key, geometry in content.geometries.items():
+            rest_shapes.yarns(lisle, key, geometry.curves, at_rest[key])
+        return len(rest_shapes._curves), len(rest_shapes._yarns)
+
+    kept, removed = scenes.curves("Kept", scenes.line()), scenes.curves("Removed", scenes.line())
+    assert see() == (2, 2)
+    kept.hide_viewport = True
+    assert see() == (2, 2), "what is hidden may come back"
+    bpy.data.objects.remove(removed)
+    assert see() == (1, 1)
