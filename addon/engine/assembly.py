@@ -27,6 +27,7 @@ def add_objects(lisle, scene, content, at_rest, rest_shapes):
                 object_index=placement.pass_index,
                 material_name=material_name,
                 material_index=material_index,
+                holdout=placement.is_holdout,
             )
     return pass_index_of
 

@@ -53,6 +53,7 @@ class Placement:
     pass_index: int
     """Blender's object index."""
     name: str
+    is_holdout: bool
 
     def order(self):
         """Sorts placements the same way in every process."""
@@ -112,8 +113,6 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
             continue
         if only is None and not obj.visible_camera:
             continue
-        if obj.is_holdout:
-            note(f"object '{obj.name}': holdout is not supported and ignored")
         follow.check(obj, depsgraph)
         geometry = obj.evaluated_geometry()
         if instance.is_instance and _is_component(obj, geometry):
@@ -132,7 +131,9 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
                 if np.linalg.det(matrix[:3, :3]) == 0:  # scaled away
                     continue
                 identity = stable_id(part.key, *instancer, number)
-                content.placements.append(Placement(part.key, matrix, identity, obj.pass_index, obj.name))
+                content.placements.append(
+                    Placement(part.key, matrix, identity, obj.pass_index, obj.name, obj.is_holdout)
+                )
     if ignored and only is None:
         note(f"objects of these kinds are not drawn: {', '.join(sorted(ignored)[:5])}")
     content.placements.sort(key=Placement.order)

@@ -80,9 +80,10 @@ struct Draw {
     handedness: f32,
     // Offset of its table of multiple scattering.
     transport: u32,
+    // 1 for a hole in the picture.
+    holdout: u32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
 }
 
 // Turns over a whole curve: whole part and rest, since the length coordinate is a 32-bit fraction of the curve's length.

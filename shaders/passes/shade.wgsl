@@ -214,8 +214,12 @@ fn winner_at(index: u32) -> Winner {
 
 fn add_surface(index: u32, draw: u32, surface: Surface) {
     let depth = to_pixel(frame.pixel_from_render, surface.position).w;
-    let shaded = shade(draw, surface);
-    let color = vec4f(radiance_of(shaded), 1.0);
+    var shaded: Shaded;
+    var color = vec4f(0.0);
+    if draws[draw].holdout == 0u {
+        shaded = shade(draw, surface);
+        color = vec4f(radiance_of(shaded), 1.0);
+    }
     add_sample(index, color, surface.normal, surface.tangent, depth, f32(draw + 1u));
     add_aovs(index, draw, surface, shaded);
 }

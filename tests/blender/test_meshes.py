@@ -99,6 +99,16 @@ def test_what_is_seen_of_a_mesh(lisle):
     }  # fmt: skip
 
 
+def test_yarn_can_be_a_holdout(lisle):
+    import bpy
+    from lisle_blender.export.scene import collect
+
+    for name in ("Seen", "Hole"):
+        scenes.curves(name, scenes.line()).is_holdout = name == "Hole"
+    content = collect(lisle, bpy.context.evaluated_depsgraph_get(), print)
+    assert {placement.name: placement.is_holdout for placement in content.placements} == {"Seen": False, "Hole": True}
+
+
 def test_instances_share_their_geometry(lisle):
     collection = scenes.collection_instance("Instances", cube(), location=(0, 5, 0))
     import bpy

@@ -147,3 +147,29 @@ def test_knit_on_a_mesh_follows_it():
 def test_one_straight_yarn_has_a_camera_too():
     camera = lisle.Camera.fit(lisle.Yarns(line(), [0, 5], yarn_radius=0.01), direction=(1, 0, 0))
     assert np.isfinite(camera.world_from_camera).all()
+
+
+@pytest.mark.parametrize("by", ["renderer", "reference"])
+def test_a_holdout_is_a_hole(renderer, swatch, camera, by):
+    """It shows nothing, not even the background, and hides the same cloth behind it, but where that stands aside."""
+    aside = np.eye(4)
+    aside[0, 3] = 0.5 * np.ptp(swatch.points[:, 0])
+    aside[1, 3] = 0.02
+
+    def draw(*holdouts, transparent=True):
+        scene = lisle.Scene(camera, [lisle.Sun(direction=(-1, 1, -2), strength=3.0)], (0.2, 0.3, 0.4))
+        for transform, holdout in zip((np.eye(4), aside), holdouts, strict=False):
+            scene.add(swatch, transform=transform, holdout=holdout)
+        if by == "reference":
+            return lisle.Reference().render(scene, samples=1, filter_width=0, bounces=1, transparent=transparent)
+        options = {"samples": 1, "filter_width": 0, "lod_pixels": 0, "transport_photons": 0}
+        return renderer.render(scene, transparent=transparent, **options)
+
+    plain, hole = draw(False), draw(True)
+    assert plain["alpha"].max() == 1 and not hole["combined"].any()
+    before_background = draw(True, transparent=False)["combined"]
+    covered = plain["alpha"] == 1
+    assert not before_background[covered].any() and (before_background[~covered][:, 3] == 1).all()
+    both = draw(True, False)["combined"]
+    assert not both[covered].any(), "it hides what is behind"
+    assert both.any()

@@ -25,6 +25,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: Yarn) -> Object {
         material: Arc::new(Material::preset("cotton").expect("a preset of the core")),
         world_from_object: DMat4::IDENTITY,
         labels: Default::default(),
+        is_holdout: false,
     }
 }
 

@@ -94,9 +94,9 @@ shared! {
         radius_max: f32,
         handedness: f32,
         transport: u32,
+        holdout: u32,
         padding_0: u32,
         padding_1: u32,
-        padding_2: u32,
     }
     Curve {
         ply_whole: u32,

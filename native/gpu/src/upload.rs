@@ -352,6 +352,7 @@ impl SceneBuffers {
                 yarn,
                 material,
                 transport: transport.map_or(0, |transport| transport.offset),
+                holdout: u32::from(object.is_holdout),
                 seed: hash_combine(0x00b1_ec70, object.id),
                 radius_max: radius_max as f32,
                 handedness: determinant.signum() as f32,

@@ -38,6 +38,7 @@ class Object:
     object_index: int = 0
     material_name: str = ""
     material_index: int = 0
+    is_holdout: bool = False
 
 
 class Scene:
@@ -105,6 +106,7 @@ class Scene:
         object_index: int = 0,
         material_name: str = "",
         material_index: int = 0,
+        holdout: bool = False,
     ) -> Object:
         """Adds yarn curves.
 
@@ -119,6 +121,7 @@ class Scene:
             object_index: the number in the pass "object_index", which need not be unique.
             material_name: the name in the pass "crypto_material".
             material_index: the number in the pass "material_index".
+            holdout: a hole in the picture, which hides what is behind and casts shadows.
         """
         if not isinstance(yarns, Yarns):
             raise InputError(f"yarns: expected lisle.Yarns, got {type(yarns).__name__}")
@@ -136,6 +139,7 @@ class Scene:
             object_index=_index(name, "object_index", object_index),
             material_name=str(material_name),
             material_index=_index(name, "material_index", material_index),
+            is_holdout=bool(holdout),
         )
         self._objects.append(added)
         return added

@@ -28,6 +28,7 @@ pub struct ObjectFields<'py> {
     object_index: u32,
     material_name: String,
     material_index: u32,
+    is_holdout: bool,
 }
 
 /// One of `lisle.Light`, by its attributes: the variants are told apart by what they have.
@@ -87,6 +88,7 @@ impl ObjectFields<'_> {
             yarn: Arc::new(extract_yarn(&self.yarn).map_err(of)?),
             material: Arc::new(extract_material(&self.material).map_err(of)?),
             world_from_object: matrix(self.world_from_object),
+            is_holdout: self.is_holdout,
             labels: Labels {
                 index: self.object_index,
                 material: self.material_name,

@@ -1,10 +1,11 @@
 //! Samples in order, pixels in parallel.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use lisle_core::sampling::{Filter, PixelFilter};
-use lisle_core::scene::Scene;
+use lisle_core::sampling::{Filter, PixelFilter, Random};
+use lisle_core::scene::{Object, Scene};
 use lisle_core::view::View;
 use rayon::prelude::*;
 
@@ -12,7 +13,6 @@ use crate::assembly::{Hit, Ray};
 use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
 use crate::world::World;
 use crate::{Error, Settings};
-use lisle_core::sampling::Random;
 
 /// Time between two calls of the progress callback, about.
 const BREATH: Duration = Duration::from_millis(200);
@@ -120,6 +120,9 @@ impl Reference {
             }
             return;
         };
+        if self.world.is_holdout(hit.segment) {
+            return;
+        }
         let surface = self.world.assembly.surface(&ray, &hit);
         pixel.add(&Sample {
             radiance: self.world.radiance(&ray, &hit, self.settings.bounces, &mut random).to_array(),
@@ -147,9 +150,10 @@ fn digest(scene: &Scene, settings: &Settings, world: &World) -> u64 {
     let settings = format!("{size:?} {region:?} {seed} {bounces:?} {shading:?} {transparent} {filter_width}");
     let sky = scene.environment.as_ref();
     let turned = sky.map(|sky| (sky.image.size(), sky.world_from_environment, sky.strength));
-    let materials: Vec<_> = scene.objects.iter().map(|object| (object.id, &object.material)).collect();
+    let of = |object: &Object| (object.id, Arc::clone(&object.material), object.is_holdout);
+    let objects: Vec<_> = scene.objects.iter().map(of).collect();
     let text = format!(
-        "{settings} {materials:?} {turned:?} {:?} {:?} {:?} {:?}",
+        "{settings} {objects:?} {turned:?} {:?} {:?} {:?} {:?}",
         scene.lights, scene.ambient, scene.camera, world.origin
     );
     // FNV-1a, 64 bits, over words where there are many.

@@ -27,6 +27,7 @@ struct ObjectFibers {
     first_point: u32,
     scattering: Scattering,
     object_id: u32,
+    is_holdout: bool,
 }
 
 impl World {
@@ -50,6 +51,7 @@ impl World {
                 first_point: all.points.len() as u32,
                 scattering: Scattering::new(*object.material, shading),
                 object_id: object.id,
+                is_holdout: object.is_holdout,
             });
             let options = fibers::Options {
                 chord_error,
@@ -81,6 +83,11 @@ impl World {
     /// How the fiber of a segment scatters.
     pub fn scattering(&self, segment: u32) -> &Scattering {
         &self.object(segment).scattering
+    }
+
+    /// Whether a segment belongs to a hole in the picture.
+    pub fn is_holdout(&self, segment: u32) -> bool {
+        self.object(segment).is_holdout
     }
 
     /// Id of the object that a segment belongs to.

@@ -178,12 +178,13 @@ class Mesh:
 
 
 class Entry:
-    def __init__(self, yarns, yarn, material, transform, object_id, name, object_index, material_name, material_index):
+    def __init__(self, yarns, yarn, material, transform, object_id, name, labels, holdout):
         assert transform.shape == (4, 4) and transform.dtype == np.float64
         assert 0 < object_id < 2**32
         self.yarns, self.yarn, self.material = yarns, yarn, material
         self.transform, self.object_id, self.name = transform, object_id, name
-        self.object_index, self.material_name, self.material_index = object_index, material_name, material_index
+        self.object_index, self.material_name, self.material_index = labels
+        self.holdout = holdout
 
 
 class Scene:
@@ -192,10 +193,11 @@ class Scene:
         self.environment, self.meshes = environment, []
 
     def add(
-        self, yarns, *, yarn, material, transform, object_id, name, object_index, material_name, material_index
+        self, yarns, *, yarn, material, transform, object_id, name, object_index, material_name, material_index,
+        holdout,
     ):  # fmt: skip
         labels = object_index, material_name, material_index
-        self.entries.append(Entry(yarns, yarn, material, transform, object_id, name, *labels))
+        self.entries.append(Entry(yarns, yarn, material, transform, object_id, name, labels, holdout))
 
 
 FURTHER_PASSES = {

@@ -38,6 +38,8 @@ pub struct Object {
     pub world_from_object: DMat4,
     /// What passes call it.
     pub labels: Labels,
+    /// Whether it is a hole in the picture: it hides what is behind, casts shadows, and shows nothing itself.
+    pub is_holdout: bool,
 }
 
 /// What passes call an object, besides its name and id.

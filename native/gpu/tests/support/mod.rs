@@ -98,6 +98,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: &Yarn) -> Object {
         material: Arc::new(Material { diffuse_weight: 0.5, ..Material::preset("cotton-2").expect("preset") }),
         world_from_object: DMat4::IDENTITY,
         labels: Default::default(),
+        is_holdout: false,
     }
 }
 

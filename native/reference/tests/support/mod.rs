@@ -58,6 +58,7 @@ pub fn object(yarns: &Arc<Yarns>, yarn: &Yarn, material: Material) -> Object {
         material: Arc::new(material),
         world_from_object: DMat4::IDENTITY,
         labels: Default::default(),
+        is_holdout: false,
     }
 }
 
