@@ -156,12 +156,13 @@ def test_settings_reach_the_renderer(lisle):
     scenes.curves("Yarn", scenes.line())
     settings = scene.lisle
     settings.samples, settings.seed, settings.lod = 33, 5, 0.5
-    settings.shading, settings.occlusion = "simple", "table"
+    settings.shading, settings.occlusion, settings.multiple_scattering = "simple", "table", False
     scene.render.resolution_percentage = 50
     bpy.ops.render.render()
     assert lisle.scenes[-1][1] == {
         "size": (32, 24), "samples": 33, "seed": 5, "lod_pixels": 0.5, "shading": "simple", "occlusion": "table",
-        "region": None, "transparent": True,
+        "region": None, "transparent": True, "filter": "blackman-harris", "filter_width": 1.5, "noise_threshold": 0.0,
+        "time_limit_s": None, "transport_photons": 0,
     }  # fmt: skip
 
 
