@@ -67,6 +67,13 @@ def rectangle(area=None):
     return there.x, height - there.y - there.height, there.x + there.width, height - there.y
 
 
+def close_other_windows():
+    """Closes the windows of renders; Blender's first one would take all others with it."""
+    for window in bpy.context.window_manager.windows[1:]:
+        with bpy.context.temp_override(window=window):
+            bpy.ops.wm.window_close()
+
+
 def operator(call, area=None, invoke=False, **arguments):
     """Calls an operator as from within a viewport; `invoke` as from a menu."""
     area = area or areas()[0]

@@ -262,5 +262,5 @@ def test_a_final_render_and_the_viewport_share_the_adapter(view):
         view.do(f"look((0.3, 0.02 * {number}, 0))")
         time.sleep(0.1)
     view.until("answer = not bpy.app.is_job_running('RENDER')")
-    view.do("[bpy.ops.wm.window_close() for window in bpy.context.window_manager.windows[1:]] and None")
+    view.do("close_other_windows()")
     view.until("answer = is_settled() or len(painter()._views) == 0")
