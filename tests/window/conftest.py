@@ -73,6 +73,7 @@ def any_window(request, blender, scene, tmp_path_factory):
 @pytest.fixture
 def view(any_window, scene):
     """The window with the scene as it was, in Rendered shading, without overlays."""
+    any_window.begin()
     any_window.do(f"bpy.ops.wm.open_mainfile(filepath={str(scene('sound'))!r}, load_ui=False)")
     any_window.do(
         "bare(); look(); space().shading.type = 'RENDERED'; space().use_render_border = False;"

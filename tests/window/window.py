@@ -47,7 +47,7 @@ class Window:
     """A Blender with `blend` open; leaves by `close`."""
 
     def __init__(self, program, display, blend, folder, backend):
-        self._folder, self._count, self.display = folder, 0, display
+        self._folder, self._count, self._begun, self.display = folder, 0, 0, display
         environment = program.environment | {"DISPLAY": display.name}
         command = [program.path, "--gpu-backend", backend, "-p", "0", "0", *map(str, display.size), blend]
         command += ["--python", HERE / "driver.py", "--", folder]
@@ -79,6 +79,14 @@ class Window:
         command.rename(self._folder / f"{self._count}.py")
         self._count += 1
         return self._folder / f"{self._count - 1}.json"
+
+    def begin(self):
+        """From here on, `news` begins."""
+        self._begun = self.log.stat().st_size
+
+    def news(self):
+        """What Blender has printed since `begin`."""
+        return self.log.read_bytes()[self._begun :].decode(errors="replace")
 
     def until(self, code, timeout_s=TIMEOUT_S):
         """Executes code again and again until its `answer` is true; returns it."""

@@ -28,6 +28,19 @@ pub fn without_flyaways(yarn: &Yarn) -> Yarn {
     yarn
 }
 
+/// Yarns at the borders of what is valid.
+pub fn extreme_yarns() -> [Yarn; 4] {
+    let base = Yarn::preset("silk-1").expect("preset");
+    let yarns = [
+        Yarn { plies: 1, fibers_per_ply: 1, ..base.clone() },
+        Yarn { r_min: 0.0, ..base.clone() },
+        Yarn { plies: 8, fibers_per_ply: 500, density_beta: 0.0, ..base.clone() },
+        Yarn { fiber_radius: 0.05, density_epsilon: 0.5, ..base },
+    ];
+    yarns.iter().for_each(|yarn| yarn.validate().expect("valid"));
+    yarns
+}
+
 /// A fiber where it crosses a section, section coordinates; the tangent's z is along the yarn.
 pub struct SectionFiber {
     pub center: DVec2,

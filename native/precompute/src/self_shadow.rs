@@ -209,7 +209,7 @@ mod tests {
     use lisle_core::yarn::{PRESET_NAMES, Yarn};
 
     use super::*;
-    use crate::explicit::{Random, Sections, without_flyaways};
+    use crate::explicit::{Random, SectionFiber, Sections, without_flyaways};
 
     const BINS: usize = 5;
 
@@ -295,6 +295,52 @@ mod tests {
         sections: u32,
         predict: impl Fn(&Seen) -> f64,
     ) -> Vec<(f64, f64, f64)> {
+        lit_fibers(yarn, angles_deg, sections, predict, |rays, light| rays.is_open(rays.met, light, 0.0))
+    }
+
+    /// As [`seen`], of light that a fiber takes in evenly over its width, as its lobes do: rays leave from its rim towards the light, and none
+    /// that contain their start hinder them.
+    fn over_width(
+        yarn: &Yarn,
+        angles_deg: &[f64],
+        sections: u32,
+        predict: impl Fn(&Seen) -> f64,
+    ) -> Vec<(f64, f64, f64)> {
+        lit_fibers(yarn, angles_deg, sections, predict, |rays, light| {
+            let across = light.perp() * rays.place + light * (1.0 - rays.place * rays.place).sqrt();
+            rays.is_open(rays.fibers[rays.own].center + rays.radius * across, light, rays.radius)
+        })
+    }
+
+    /// Fibers of a section, and where a viewer meets the nearest of them.
+    struct Rays<'a> {
+        fibers: &'a [SectionFiber],
+        radius: f64,
+        own: usize,
+        met: DVec2,
+        /// Even on (−1, 1): a place on a fiber's width.
+        place: f64,
+    }
+
+    impl Rays<'_> {
+        /// Whether no other fiber lies towards a light, but those nearer than a distance.
+        fn is_open(&self, from: DVec2, light: DVec2, beyond: f64) -> bool {
+            !self.fibers.iter().enumerate().any(|(k, fiber)| {
+                let w = fiber.center - from;
+                let is_hit = w.dot(light) > 0.0 && w.perp_dot(light).abs() < self.radius;
+                k != self.own && is_hit && w.length() > beyond
+            })
+        }
+    }
+
+    /// For each angle between light and viewer: the angle, the share of seen fibers for which the light is open, and the mean prediction.
+    fn lit_fibers(
+        yarn: &Yarn,
+        angles_deg: &[f64],
+        sections: u32,
+        predict: impl Fn(&Seen) -> f64,
+        is_open: impl Fn(&Rays, DVec2) -> bool,
+    ) -> Vec<(f64, f64, f64)> {
         let (dealer, mut random) = (Sections::new(yarn), Random::new(6));
         let radius = yarn.fiber_radius / yarn.outer_radius();
         let mut sums = vec![(0.0, 0.0, 0.0); angles_deg.len()];
@@ -303,8 +349,8 @@ mod tests {
             for _ in 0..20 {
                 let psi = TAU * random.unit();
                 let view = DVec2::from_angle(psi);
-                let across = 2.0 * random.unit() - 1.0;
-                let ray = view.perp() * across;
+                let ray = view.perp() * (2.0 * random.unit() - 1.0);
+                let place = 2.0 * random.unit() - 1.0;
                 // The fiber nearest to the viewer, as a circle.
                 let met = fibers.iter().enumerate().filter_map(|(k, fiber)| {
                     let offset = (fiber.center - ray).dot(view.perp());
@@ -312,59 +358,12 @@ mod tests {
                     (half > 0.0).then(|| (k, (fiber.center - ray).dot(view) + half.sqrt()))
                 });
                 let Some((own, depth)) = met.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
-                let q = ray + view * depth;
-                for (k, angle) in angles_deg.iter().enumerate() {
-                    let to_light = psi + angle.to_radians();
-                    let light = DVec2::from_angle(to_light);
-                    let open = !fibers.iter().enumerate().any(|(k, fiber)| {
-                        let w = fiber.center - q;
-                        k != own && w.dot(light) > 0.0 && w.perp_dot(light).abs() < radius
-                    });
-                    let sum = &mut sums[k];
-                    let p = predict(&Seen { q, psi_view: psi, psi_light: to_light });
-                    *sum = (sum.0 + f64::from(u8::from(open)), sum.1 + p, sum.2 + 1.0);
-                }
-            }
-        }
-        angles_deg.iter().zip(sums).map(|(a, s)| (*a, s.0 / s.2, s.1 / s.2)).collect()
-    }
-
-    /// As [`seen`], of light that a fiber takes in evenly over its width, as its lobes do: rays leave from its rim towards the light.
-    fn over_width(
-        yarn: &Yarn,
-        angles_deg: &[f64],
-        sections: u32,
-        predict: impl Fn(&Seen) -> f64,
-    ) -> Vec<(f64, f64, f64)> {
-        let (dealer, mut random) = (Sections::new(yarn), Random::new(7));
-        let radius = yarn.fiber_radius / yarn.outer_radius();
-        let mut sums = vec![(0.0, 0.0, 0.0); angles_deg.len()];
-        for _ in 0..sections {
-            let fibers = dealer.draw(&mut random);
-            for _ in 0..20 {
-                let psi = TAU * random.unit();
-                let view = DVec2::from_angle(psi);
-                let ray = view.perp() * (2.0 * random.unit() - 1.0);
-                let met = fibers.iter().enumerate().filter_map(|(k, fiber)| {
-                    let offset = (fiber.center - ray).dot(view.perp());
-                    let half = radius * radius - offset * offset;
-                    (half > 0.0).then(|| (k, (fiber.center - ray).dot(view) + half.sqrt()))
-                });
-                let Some((own, depth)) = met.max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
-                let q = ray + view * depth;
-                let place = 2.0 * random.unit() - 1.0;
-                for (k, angle) in angles_deg.iter().enumerate() {
-                    let to_light = psi + angle.to_radians();
-                    let light = DVec2::from_angle(to_light);
-                    let rim =
-                        fibers[own].center + radius * (light.perp() * place + light * (1.0 - place * place).sqrt());
-                    let open = !fibers.iter().enumerate().any(|(k, fiber)| {
-                        let w = fiber.center - rim;
-                        k != own && w.dot(light) > 0.0 && w.perp_dot(light).abs() < radius && w.length() > radius
-                    });
-                    let p = predict(&Seen { q, psi_view: psi, psi_light: to_light });
-                    let sum = &mut sums[k];
-                    *sum = (sum.0 + f64::from(u8::from(open)), sum.1 + p, sum.2 + 1.0);
+                let rays = Rays { fibers: &fibers, radius, own, met: ray + view * depth, place };
+                for (angle, sum) in angles_deg.iter().zip(&mut sums) {
+                    let psi_light = psi + angle.to_radians();
+                    let open = is_open(&rays, DVec2::from_angle(psi_light));
+                    let predicted = predict(&Seen { q: rays.met, psi_view: psi, psi_light });
+                    *sum = (sum.0 + f64::from(u8::from(open)), sum.1 + predicted, sum.2 + 1.0);
                 }
             }
         }

@@ -30,6 +30,7 @@ mod tests {
     use lisle_core::yarn::PRESET_NAMES;
 
     use super::*;
+    use crate::explicit::extreme_yarns;
 
     #[test]
     fn tables_are_deterministic() {
@@ -45,14 +46,7 @@ mod tests {
 
     #[test]
     fn extreme_yarns_give_finite_tables() {
-        let base = Yarn::preset("silk-1").expect("preset");
-        for yarn in [
-            Yarn { plies: 1, fibers_per_ply: 1, ..base.clone() },
-            Yarn { r_min: 0.0, ..base.clone() },
-            Yarn { plies: 8, fibers_per_ply: 500, density_beta: 0.0, ..base.clone() },
-            Yarn { fiber_radius: 0.05, density_epsilon: 0.5, ..base },
-        ] {
-            yarn.validate().expect("valid");
+        for yarn in extreme_yarns() {
             let tables = Tables::new(&yarn);
             assert!(tables.self_shadow.optical_depth.iter().all(|t| t.is_finite() && *t >= 0.0));
             assert!(tables.occlusion.visibility.iter().all(|v| (0.0..=1.0).contains(v)));

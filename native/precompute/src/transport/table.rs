@@ -142,6 +142,7 @@ mod tests {
 
     use super::*;
     use crate::Occlusion;
+    use crate::explicit::extreme_yarns;
 
     const SIZE: TransportSize = TransportSize::ALL;
 
@@ -250,14 +251,7 @@ mod tests {
 
     #[test]
     fn extreme_yarns_give_finite_tables() {
-        let base = Yarn::preset("silk-1").expect("preset");
-        for yarn in [
-            Yarn { plies: 1, fibers_per_ply: 1, ..base.clone() },
-            Yarn { r_min: 0.0, ..base.clone() },
-            Yarn { plies: 8, fibers_per_ply: 500, density_beta: 0.0, ..base.clone() },
-            Yarn { fiber_radius: 0.05, density_epsilon: 0.5, ..base },
-        ] {
-            yarn.validate().expect("valid");
+        for yarn in extreme_yarns() {
             let t = made(&yarn, &Material::preset("cotton").expect("preset"), 20_000);
             let values = t.radiance.iter().chain(&t.ambient).chain(&t.sides).flatten();
             assert!(values.clone().all(|x| x.is_finite() && *x >= 0.0), "{yarn:?}");

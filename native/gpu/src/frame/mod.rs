@@ -1,17 +1,25 @@
 //! A picture: tiles, samples, and the passes of a sample in order.
 
+mod buffers;
+mod read_back;
+mod threads;
+mod tiles;
+
+pub(crate) use buffers::FrameBuffers;
+
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
 
-use crate::aov::{self, NEIGHBOUR_WORDS, Planes};
-use crate::cryptomatte;
+use self::threads::{core_parts, fold, nearest_w, parts};
+use self::tiles::{tile_pixels, tiles};
+use crate::aov::{NEIGHBOUR_WORDS, Planes};
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
 use crate::layout::{self, NONE};
 use crate::lights::{self, Extent, LightSample};
-use crate::mesh_raster::{MeshPipelines, MeshTargets};
+use crate::mesh_raster::MeshPipelines;
 use crate::meshes::{MeshBuffers, MeshPlaces};
 use crate::motion::{Moment, Motion, Neighbour};
 use crate::noise::Noise;
@@ -19,16 +27,13 @@ use crate::pipelines::{Bindings, Pipelines};
 use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
 use crate::shader::{Film, Pass, Resolve};
 use crate::timing::Timer;
-use crate::upload::{Draws, SceneBuffers, empty_storage};
-use crate::{Aov, Environment, Error, Image, Labels, Object, Occlusion, Progress, Scene, Settings, Statistics};
+use crate::upload::SceneBuffers;
+use crate::{Environment, Error, Image, Occlusion, Progress, Scene, Settings, Statistics};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
 pub(crate) const BLOCK: u32 = 256;
 pub(crate) const LANES: u32 = 64;
 pub(crate) const ROW: u32 = 32768;
-
-/// Most pixels of a tile.
-const TILE_PIXELS: u64 = 1 << 22;
 
 /// Directions of the sky that a picture takes at least; `MOST_SKY_VIEWS` of `shaders/passes/shade.wgsl`.
 pub(crate) const LEAST_SKY_VIEWS: u32 = 8;
@@ -79,191 +84,8 @@ impl FrameInput<'_> {
     }
 }
 
-/// Buffers that depend on the picture's size and the scene's counts.
-pub(crate) struct FrameBuffers {
-    capacity: Capacity,
-    keys: wgpu::Buffer,
-    film: [wgpu::Buffer; 3],
-    pixel_list: wgpu::Buffer,
-    resolve_dispatch: wgpu::Buffer,
-    staging: wgpu::Buffer,
-    segment_work: wgpu::Buffer,
-    block_work: wgpu::Buffer,
-    dispatch: wgpu::Buffer,
-    draws: wgpu::Buffer,
-    lights: wgpu::Buffer,
-    views: wgpu::Buffer,
-    shadow_depths: wgpu::Buffer,
-    aovs: wgpu::Buffer,
-    uniform: wgpu::Buffer,
-    /// Of the passes that need a few numbers more.
-    pass_uniform: wgpu::Buffer,
-    meshes: wgpu::Buffer,
-    mesh_draws: wgpu::Buffer,
-    mesh_targets: MeshTargets,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Capacity {
-    pixels: u64,
-    planes: u64,
-    segments: u64,
-    draws: u64,
-    meshes: u64,
-    lights: u64,
-    views: u64,
-    shadow_resolution: u32,
-    /// Of the targets of meshes.
-    tile: [u32; 2],
-    carrier: u32,
-}
-
-/// Rectangles of at most so many pixels, 2048 or more, that cover a region: left, top, width, height.
-fn tiles([left, top, width, height]: [u32; 4], most: u64) -> Vec<[u32; 4]> {
-    let tile_width = width.min(2048);
-    let tile_height = height.min((most / u64::from(tile_width)) as u32);
-    let mut tiles = Vec::new();
-    for y in (0..height).step_by(tile_height as usize) {
-        for x in (0..width).step_by(tile_width as usize) {
-            tiles.push([left + x, top + y, tile_width.min(width - x), tile_height.min(height - y)]);
-        }
-    }
-    tiles
-}
-
-/// Width and height that hold any of some tiles.
-fn most_of(tiles: &[[u32; 4]]) -> [u32; 2] {
-    tiles.iter().fold([1, 1], |[width, height], [_, _, w, h]| [width.max(*w), height.max(*h)])
-}
-
 fn bits_for(count: u32) -> u32 {
     32 - count.saturating_sub(1).leading_zeros()
-}
-
-impl FrameBuffers {
-    /// Buffers for a picture: the kept ones if they fit.
-    pub fn fit(
-        gpu: &Gpu,
-        kept: Option<Self>,
-        input: &FrameInput,
-        draws: &Draws,
-        region: [u32; 4],
-    ) -> Result<Self, Error> {
-        let has_meshes = !input.meshes.is_empty();
-        let sky_views = input.sky_views() + input.environment_suns();
-        let views = u64::from(lights::most_views(&input.scene.lights, sky_views, has_meshes));
-        // As many texels as one binding holds.
-        let most_texels = gpu.limits.max_storage_buffer_binding_size / 4 / views.max(1);
-        let shadow_resolution = input.settings.shadow_resolution.min(most_texels.isqrt() as u32);
-        let largest = tiles(region, tile_pixels(gpu, &input.planes))
-            .into_iter()
-            .map(|[_, _, w, h]| u64::from(w) * u64::from(h))
-            .max();
-        let capacity = Capacity {
-            pixels: largest.unwrap_or(0),
-            planes: u64::from(input.planes.count),
-            segments: u64::from(draws.segment_count),
-            draws: draws.items.len() as u64,
-            meshes: input.scene.meshes.len() as u64,
-            lights: u64::from(input.light_count()),
-            views,
-            shadow_resolution,
-            tile: if has_meshes { most_of(&tiles(region, tile_pixels(gpu, &input.planes))) } else { [1, 1] },
-            carrier: if has_meshes { shadow_resolution } else { 1 },
-        };
-        if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
-            return Ok(buffers);
-        }
-        let uniform = |label, size: usize, kind| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: size as u64,
-                usage: kind | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
-        let film = || empty_storage(gpu, "film", 16 * capacity.pixels);
-        Ok(Self {
-            keys: empty_storage(gpu, "visibility keys", 8 * capacity.pixels)?,
-            film: [film()?, film()?, film()?],
-            pixel_list: empty_storage(gpu, "pixels to resolve", 4 * capacity.pixels)?,
-            resolve_dispatch: empty_storage(gpu, "dispatch of the resolve", 32)?,
-            staging: gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("read-back"),
-                size: 4 * capacity.planes.max(12) * capacity.pixels,
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
-            segment_work: empty_storage(gpu, "work of segments", 4 * capacity.segments)?,
-            block_work: empty_storage(gpu, "work of blocks", 4 * capacity.segments.div_ceil(u64::from(BLOCK)))?,
-            dispatch: empty_storage(gpu, "dispatch", 32)?,
-            draws: empty_storage(gpu, "instances", capacity.draws * size_of::<layout::Draw>() as u64)?,
-            lights: empty_storage(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
-            views: empty_storage(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
-            shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
-            uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::STORAGE),
-            pass_uniform: uniform("pass", 16, wgpu::BufferUsages::UNIFORM),
-            aovs: empty_storage(gpu, "passes", 4 * capacity.planes * capacity.pixels)?,
-            meshes: uniform("meshes of a sample", size_of::<layout::Meshes>(), wgpu::BufferUsages::STORAGE),
-            mesh_draws: empty_storage(gpu, "meshes", capacity.meshes * size_of::<layout::MeshDraw>() as u64)?,
-            mesh_targets: MeshTargets::new(gpu, capacity.tile, capacity.carrier),
-            capacity,
-        })
-    }
-
-    fn bytes(&self) -> u64 {
-        let film: u64 = self.film.iter().map(wgpu::Buffer::size).sum();
-        [
-            &self.keys,
-            &self.staging,
-            &self.pixel_list,
-            &self.segment_work,
-            &self.block_work,
-            &self.draws,
-            &self.lights,
-            &self.views,
-            &self.shadow_depths,
-            &self.aovs,
-        ]
-        .map(wgpu::Buffer::size)
-        .iter()
-        .sum::<u64>()
-            + film
-            + self.mesh_targets.bytes()
-    }
-}
-
-/// Splits workgroups over two dimensions: a device takes at most 65535 in each.
-fn fold(workgroups: u32) -> (u32, u32) {
-    (workgroups.min(ROW), workgroups.div_ceil(ROW))
-}
-
-/// Threads that share lines of so many pixels' length and width, with `steps` joints, inside of `most` pixels: a power of two.
-///
-/// As `parts_exponent` in `shaders/passes/work.wgsl`, from a bound on all lines of a pass.
-fn parts(length: f64, width: f64, steps: f64, most: f64) -> u32 {
-    const VISITS: f64 = 24_000.0;
-    const MOST: u32 = 64;
-    let visits = (length.min(most) + steps * width) * width;
-    ((visits / VISITS).ceil().clamp(1.0, f64::from(MOST)) as u32).next_power_of_two()
-}
-
-/// Threads that share a segment's cores: they are drawn while a fiber is thinner than the level of detail's threshold.
-fn core_parts(input: &FrameInput, draws: &Draws, most: u32) -> u32 {
-    let of = |object: &Object| {
-        let yarn = &object.yarn;
-        let radius = f64::from(input.settings.lod_pixels) * yarn.outer_radius() / (2.0 * yarn.fiber_radius);
-        let width = 2.2 * yarn.ellipse_long.max(yarn.ellipse_short) / yarn.outer_radius() * radius + 2.0;
-        let plies = f64::from(yarn.plies);
-        parts(plies * draws.slenderness * radius, width, 16.0 * plies, 2.0 * plies * f64::from(most))
-    };
-    input.scene.objects.iter().map(of).max().unwrap_or(1)
-}
-
-/// Least w that a shadow view measures sizes at: 1 for a parallel one.
-fn nearest_w(view: &layout::ShadowView) -> f64 {
-    let parallel = view.texel_from_render.row(2) == glam::Vec4::W;
-    if parallel { 1.0 } else { f64::from(view.near).max(1e-30) }
 }
 
 /// Records and runs the passes of one picture.
@@ -325,7 +147,7 @@ impl<'a> Recorder<'a> {
                 light_count: input.light_count(),
                 occlusion_table: u32::from(settings.occlusion == Occlusion::Table),
                 ambient: scene.ambient,
-                shadow_resolution: frame.capacity.shadow_resolution,
+                shadow_resolution: frame.shadow_resolution(),
                 background,
                 opaque_background: u32::from(!settings.transparent),
                 cull_margin: 0.5 * settings.filter_width,
@@ -532,7 +354,7 @@ impl<'a> Recorder<'a> {
         let mut first_view_to_draw = 0;
         let mut meshes = self.meshes();
         if !extent.is_empty() {
-            let resolution = self.frame.capacity.shadow_resolution;
+            let resolution = self.frame.shadow_resolution();
             let mut lights = LightSample::new(&scene.lights, view.origin, extent, resolution, number, settings.seed);
             if self.static_lights {
                 first_view_to_draw = lights.views.len() as u32;
@@ -599,14 +421,14 @@ impl<'a> Recorder<'a> {
         if count == 0 {
             return;
         }
-        let resolution = f64::from(self.frame.capacity.shadow_resolution);
+        let resolution = f64::from(self.frame.shadow_resolution());
         let draws = &self.moment.draws;
         let radius = |view: &layout::ShadowView| draws.radius_max * f64::from(view.texels_per_unit) / nearest_w(view);
         let radius = views.iter().map(radius).fold(0.0, f64::max).min(resolution);
         let parts = parts(draws.slenderness * radius, 2.0 * radius + 2.0, 8.0, 2.0 * resolution);
         self.gpu.queue.write_buffer(&self.frame.pass_uniform, 0, bytemuck::cast_slice(&[first, parts, 0, 0]));
         let mut encoder = self.encoder();
-        let bytes = 4 * u64::from(self.frame.capacity.shadow_resolution).pow(2);
+        let bytes = 4 * u64::from(self.frame.shadow_resolution()).pow(2);
         encoder.clear_buffer(&self.frame.shadow_depths, bytes * u64::from(first), Some(bytes * u64::from(count)));
         if self.uniform.segment_count > 0 {
             let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
@@ -714,152 +536,11 @@ impl<'a> Recorder<'a> {
         let timestamps = self.timer.begin(pass.entry_point());
         pipelines.record(gpu, encoder, pass, &bindings, timestamps, dispatch);
     }
-
-    /// Object id and labels of a draw: meshes count on from the yarns.
-    fn labels(&self, draw: usize) -> (u32, &Labels) {
-        let Scene { objects, meshes, .. } = self.input.scene;
-        match objects.get(draw) {
-            Some(object) => (object.id, &object.labels),
-            None => (meshes[draw - objects.len()].id, &meshes[draw - objects.len()].labels),
-        }
-    }
-
-    /// Bytes of a buffer, copied through the staging buffer.
-    fn read(&self, copies: &[(&wgpu::Buffer, u64)]) -> Result<Vec<u8>, Error> {
-        let mut encoder = self.encoder();
-        let mut at = 0;
-        for (buffer, bytes) in copies {
-            encoder.copy_buffer_to_buffer(buffer, 0, &self.frame.staging, at, *bytes);
-            at += bytes;
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-        let slice = self.frame.staging.slice(..at);
-        slice.map_async(wgpu::MapMode::Read, |_| {});
-        self.gpu.finish()?;
-        let data = slice.get_mapped_range().map_err(|error| self.gpu.error(error.to_string()))?.to_vec();
-        self.frame.staging.unmap();
-        Ok(data)
-    }
-
-    /// Fiber segments that the last cull has found.
-    fn check_work(&self) -> Result<u64, Error> {
-        if self.uniform.segment_count == 0 {
-            return Ok(0);
-        }
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(&[(&self.frame.dispatch, 32)])?);
-        if words[4] != 0 {
-            return Err(Error::input("scene", "more than 4.29 billion fiber segments are visible in one picture"));
-        }
-        Ok(u64::from(words[5]))
-    }
-
-    /// Ids of all draws in the mattes: by object, by material.
-    fn matte_ids(&self) -> [Vec<f32>; 2] {
-        let Scene { objects, meshes, .. } = self.input.scene;
-        let id = |name: &str| cryptomatte::id(cryptomatte::hash(name));
-        let objects = objects.iter().map(|o| (&o.name, &o.labels.material));
-        objects
-            .chain(meshes.iter().map(|m| (&m.name, &m.labels.material)))
-            .map(|(name, material)| (id(name), id(material)))
-            .unzip::<_, _, Vec<_>, Vec<_>>()
-            .into()
-    }
-
-    fn read_tile(&self, tile: [u32; 4], origin: [u32; 2], samples: u32, image: &mut Image) -> Result<(), Error> {
-        let [left, top, width, height] = tile;
-        let pixels = width as usize * height as usize;
-        let bytes = 16 * pixels as u64;
-        let film = &self.frame.film;
-        let data = self.read(&[(&film[0], bytes), (&film[1], bytes), (&film[2], bytes)])?;
-        let values: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&data);
-        let (color, rest) = values.split_at(pixels);
-        let (normal, tangent) = rest.split_at(pixels);
-        let words: Vec<u32> = match self.input.planes.count {
-            0 => Vec::new(),
-            count => {
-                bytemuck::pod_collect_to_vec(&self.read(&[(&self.frame.aovs, 4 * u64::from(count) * pixels as u64)])?)
-            }
-        };
-        let planes = aov::Tile { planes: self.input.planes, words: &words, pixels };
-        let ids = self.matte_ids();
-        let scale = 1.0 / samples as f32;
-        let direction = |v: [f32; 4]| {
-            // Background samples pull the mean towards zero; its direction is that of the surface.
-            Vec3::new(v[0], v[1], v[2]).normalize_or_zero().to_array()
-        };
-        for y in 0..height as usize {
-            let row = (top as usize - origin[1] as usize + y) * image.size[0] as usize + (left - origin[0]) as usize;
-            for x in 0..width as usize {
-                let (from, to) = (y * width as usize + x, row + x);
-                image.combined[to] = color[from].map(|c| c * scale);
-                image.depth[to] = normal[from][3];
-                image.normal[to] = direction(normal[from]);
-                image.tangent[to] = direction(tangent[from]);
-                let object = (tangent[from][3] as usize).checked_sub(1).map(|draw| self.labels(draw));
-                image.object_id[to] = object.map_or(0, |(id, _)| id);
-                for (aov, values) in &mut image.aovs {
-                    let matte = |ids: &[f32]| {
-                        let found = planes.matte(from).map(|(draw, count)| (ids[draw as usize - 1], count));
-                        cryptomatte::ranks(found, samples)
-                    };
-                    let mean = |plane: u32| planes.values::<3>(plane, from).map(|sum| sum * scale);
-                    let value = &mut values[aov.channels() * to..][..aov.channels()];
-                    match aov {
-                        Aov::Position if object.is_some() => {
-                            let render = planes.values::<3>(planes.planes.position, from);
-                            let world = self.first_origin + Vec3::from(render).as_dvec3();
-                            value.copy_from_slice(&world.as_vec3().to_array());
-                        }
-                        Aov::Position => {}
-                        Aov::Uv => value.copy_from_slice(&planes.values::<2>(planes.planes.uv, from)),
-                        Aov::Vector => value.copy_from_slice(&planes.vector(from)),
-                        Aov::ObjectIndex => value[0] = object.map_or(0.0, |(_, labels)| labels.index as f32),
-                        Aov::MaterialIndex => value[0] = object.map_or(0.0, |(_, labels)| labels.material_index as f32),
-                        Aov::CryptoObject => value.copy_from_slice(&matte(&ids[0])),
-                        Aov::CryptoMaterial => value.copy_from_slice(&matte(&ids[1])),
-                        Aov::Shadow => value[0] = planes.values::<1>(planes.planes.shadow, from)[0] * scale,
-                        Aov::Diffuse => value.copy_from_slice(&mean(planes.planes.diffuse)),
-                        Aov::Specular => value.copy_from_slice(&mean(planes.planes.specular)),
-                        Aov::Transmission => value.copy_from_slice(&mean(planes.planes.transmission)),
-                        Aov::Scattered => value.copy_from_slice(&mean(planes.planes.scattered)),
-                        Aov::Ambient => value.copy_from_slice(&mean(planes.planes.ambient)),
-                        Aov::Albedo => value.copy_from_slice(&mean(planes.planes.albedo)),
-                        Aov::DenoisingNormal => {
-                            let [x, y, z, _] = normal[from];
-                            value.copy_from_slice(&[x, y, z].map(|c| c * scale));
-                        }
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Most pixels of a tile, so that one binding holds all planes.
-fn tile_pixels(gpu: &Gpu, planes: &Planes) -> u64 {
-    let most = gpu.limits.max_storage_buffer_binding_size / (4 * u64::from(planes.count.max(1)));
-    most.clamp(2048, TILE_PIXELS)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn tiles_cover_a_region_once() {
-        let region = [3, 5, 5000, 4100];
-        let mut seen = vec![0_u8; 5000 * 4100];
-        for [left, top, width, height] in tiles(region, TILE_PIXELS) {
-            assert!(u64::from(width) * u64::from(height) <= TILE_PIXELS);
-            for y in top..top + height {
-                for x in left..left + width {
-                    seen[((y - 5) * 5000 + x - 3) as usize] += 1;
-                }
-            }
-        }
-        assert!(seen.iter().all(|n| *n == 1));
-    }
 
     #[test]
     fn bits_hold_the_largest_index() {
