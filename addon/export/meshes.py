@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes of the scene, as they hide yarn and throw shadows on it."""
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -66,11 +67,22 @@ class MeshReader:
         """[(material index, Surface)]"""
         key = obj.data.as_pointer() if obj.type == "MESH" else obj.as_pointer()
         if key not in self._parts_of:
-            mesh = obj.data if obj.type == "MESH" else obj.to_mesh()
-            self._parts_of[key] = [] if mesh is None else _read(mesh)
-            if obj.type != "MESH":
-                obj.to_mesh_clear()
+            with evaluated_mesh(obj) as mesh:
+                self._parts_of[key] = [] if mesh is None else _read(mesh)
         return self._parts_of[key]
+
+
+@contextmanager
+def evaluated_mesh(obj):
+    """The mesh of an evaluated object of one of `TYPES`, None without one; not to be kept."""
+    # In Edit Mode Blender leaves the data of an evaluated mesh empty.
+    if obj.type == "MESH" and not obj.data.is_editmode:
+        yield obj.data
+        return
+    try:
+        yield obj.to_mesh()
+    finally:
+        obj.to_mesh_clear()
 
 
 def mesh_kind(obj):
