@@ -15,7 +15,7 @@ from ..export.world import read_world
 from . import reference
 from .assembly import add_objects
 from .job import REST_SHAPES, SURFACES
-from .motion import at_times, shutter_times
+from .motion import at_times, present, shutter_times
 from .passes import wanted_passes
 from .renderer import drop, renderer
 
@@ -139,7 +139,7 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
         pass_index_of |= of_meshes
     elif content.meshes:
         note("the path tracer does not draw meshes")
-    shutter, now = shutter_times(depsgraph.scene), depsgraph.scene.frame_current_final
+    shutter, now = shutter_times(depsgraph.scene), present(depsgraph.scene)
     if shutter and with_neighbours:
         note("the pass Vector is black, because there is motion blur")
     around = [now - 1, now + 1] if with_neighbours and not shutter else []

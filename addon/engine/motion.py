@@ -8,6 +8,11 @@ from ..export.camera import native_camera
 from ..export.scene import collect
 
 
+def present(scene):
+    """The frame on the clock with its part, as `frame_set` takes it: before Blender remaps time."""
+    return scene.frame_current + scene.frame_subframe
+
+
 def shutter_times(scene):
     """Frames at even steps over the time that the shutter is open; none without motion blur."""
     render = scene.render
@@ -15,7 +20,7 @@ def shutter_times(scene):
         return []
     begin = {"START": 0.0, "CENTER": -0.5, "END": -1.0}[render.motion_blur_position]
     steps = scene.lisle.motion_steps
-    now = scene.frame_current_final
+    now = present(scene)
     return [now + render.motion_blur_shutter * (begin + step / steps) for step in range(steps + 1)]
 
 
