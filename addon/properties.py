@@ -19,6 +19,12 @@ def _tag(group, _context):
     group.id_data.update_tag()
 
 
+def _make_sockets(group, _context):
+    """Gives the compositor's nodes the sockets of the passes that are on."""
+    for view_layer in group.id_data.view_layers:
+        view_layer.update_render_passes()
+
+
 def _fill_from_preset(group, context):
     """Copies the preset's numbers, so that customizing starts from what is on screen."""
     _tag(group, context)
@@ -49,6 +55,10 @@ def _color(name, description):
 
 def _degrees(name, description):
     return FloatProperty(name=name, description=f"{description}, in degrees", min=0.1, max=90, default=10, update=_tag)
+
+
+def _pass(name, description):
+    return BoolProperty(name=name, description=description, update=_make_sockets)
 
 
 class LisleYarn(bpy.types.PropertyGroup):
@@ -374,22 +384,19 @@ class LisleObjectSettings(bpy.types.PropertyGroup):
 class LisleViewLayerSettings(bpy.types.PropertyGroup):
     """`view_layer.lisle`"""
 
-    use_pass_tangent: BoolProperty(name="Fiber Tangent", description="Direction of the fibers, world space")
-    use_pass_alpha: BoolProperty(name="Alpha", description="Coverage of the yarn, also where the film is opaque")
-    use_pass_diffuse: BoolProperty(
-        name="Diffuse",
-        description="Light of lamps by the diffuse part. This pass and the next four add up to the colour of the yarn",
+    use_pass_tangent: _pass("Fiber Tangent", "Direction of the fibers, world space")
+    use_pass_coverage: _pass("Coverage", "Alpha of what is drawn, also where the film is opaque")
+    use_pass_diffuse: _pass(
+        "Diffuse",
+        "Light of lamps by the diffuse part. This pass and the next four add up to the colour of the yarn",
     )
-    use_pass_specular: BoolProperty(name="Specular", description="Light of lamps that fibers reflect")
-    use_pass_transmission: BoolProperty(name="Transmission", description="Light of lamps that shines through fibers")
-    use_pass_scattered: BoolProperty(name="Scattered", description="Light of lamps that is scattered more than once")
-    use_pass_ambient: BoolProperty(name="Ambient", description="Light of the surroundings, without the background")
-    use_pass_shadow: BoolProperty(
-        name="Shadow", description="Share of the lamps' light that shadows leave, from 0 in the dark to 1"
-    )
-    use_pass_denoising: BoolProperty(
-        name="Denoising Data",
-        description="Denoising Albedo and Denoising Normal, for the compositor's Denoise node",
+    use_pass_specular: _pass("Specular", "Light of lamps that fibers reflect")
+    use_pass_transmission: _pass("Transmission", "Light of lamps that shines through fibers")
+    use_pass_scattered: _pass("Scattered", "Light of lamps that is scattered more than once")
+    use_pass_ambient: _pass("Ambient", "Light of the surroundings, without the background")
+    use_pass_shadow: _pass("Shadow", "Share of the lamps' light that shadows leave, from 0 in the dark to 1")
+    use_pass_denoising: _pass(
+        "Denoising Data", "Denoising Albedo and Denoising Normal, for the compositor's Denoise node"
     )
 
 

@@ -59,7 +59,8 @@ PASSES = (
     Pass(_name("IndexOB", "Object Index"), "X", "VALUE", "pass_index", "use_pass_object_index"),
     Pass(_name("IndexMA", "Material Index"), "X", "VALUE", "material_index", "use_pass_material_index"),
     Pass("Tangent", "XYZ", "VECTOR", "tangent", "lisle.use_pass_tangent"),
-    Pass("Alpha", "A", "VALUE", "alpha", "lisle.use_pass_alpha"),
+    # Not "Alpha": the node has a socket of that name already, and some releases of Blender then take others away.
+    Pass("Coverage", "A", "VALUE", "alpha", "lisle.use_pass_coverage"),
     _light("Diffuse", "diffuse"),
     _light("Specular", "specular"),
     _light("Transmission", "transmission"),

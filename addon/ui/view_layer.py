@@ -21,7 +21,7 @@ class LISLE_VIEWLAYER_PT_passes(LislePanel, bpy.types.Panel):
         vector.active = not context.scene.render.use_motion_blur
         vector.prop(view_layer, "use_pass_vector")
         column.prop(view_layer, "use_pass_uv")
-        column.prop(view_layer.lisle, "use_pass_alpha")
+        column.prop(view_layer.lisle, "use_pass_coverage")
         column.prop(view_layer.lisle, "use_pass_denoising")
         column = layout.column(heading="Indices")
         column.prop(view_layer, "use_pass_object_index")

@@ -84,7 +84,7 @@ def test_passes_arrive_in_a_multilayer_file(lisle, tmp_path):
 
     layer = bpy.context.view_layer
     layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = True
-    layer.lisle.use_pass_tangent = layer.lisle.use_pass_alpha = True
+    layer.lisle.use_pass_tangent = layer.lisle.use_pass_coverage = True
     yarn = scenes.curves("Yarn", scenes.line())
     yarn.pass_index = 7
     channels = scenes.render_channels(tmp_path / "a.exr", multilayer=True)
@@ -94,7 +94,7 @@ def test_passes_arrive_in_a_multilayer_file(lisle, tmp_path):
     covered[row, x] = True
     expected = {
         "Combined.A": (1, 0), "Depth.Z": (10, 1e10), "Normal.Z": (1, 0), "Normal.X": (0, 0), "Tangent.X": (1, 0),
-        "Tangent.Z": (0, 0), "Alpha.A": (1, 0), f"{index}.X": (7, 0),
+        "Tangent.Z": (0, 0), "Coverage.A": (1, 0), f"{index}.X": (7, 0),
     }  # fmt: skip
     for name, (inside, outside) in expected.items():
         picture = channels[f"{layer.name}.{name}"]
@@ -105,23 +105,21 @@ def test_passes_have_compositor_sockets(lisle):
     import bpy
 
     scene, layer = bpy.context.scene, bpy.context.view_layer
-    layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = True
-    layer.lisle.use_pass_tangent = layer.lisle.use_pass_alpha = True
     if bpy.app.version >= (5, 0, 0):
         tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
     else:
         scene.use_nodes = True
         tree = scene.node_tree
     node = tree.nodes.new("CompositorNodeRLayers")
-    layer.update_render_passes()
+    layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = True
+    layer.lisle.use_pass_tangent = layer.lisle.use_pass_coverage = True
     sockets = {socket.name: socket.type for socket in node.outputs if socket.enabled}
     index = "Object Index" if bpy.app.version >= (5, 0, 0) else "IndexOB"
     assert sockets.items() >= {
         "Image": "RGBA", "Depth": "VALUE", "Normal": "VECTOR", "Tangent": "VECTOR", index: "VALUE",
     }.items()  # fmt: skip
-    assert "Alpha" in sockets
+    assert {"Alpha", "Coverage"} <= sockets.keys()
     layer.lisle.use_pass_tangent = False
-    layer.update_render_passes()
     assert "Tangent" not in {socket.name for socket in node.outputs if socket.enabled}
 
 

@@ -99,6 +99,28 @@ def test_an_error_in_a_subframe_leaves_the_frame_as_it_was(lisle):
     assert (scene.frame_current, scene.frame_subframe) == (2, 0)
 
 
+@pytest.mark.parametrize("shutter", [0.5, None])
+def test_remapped_time_is_remapped_once(lisle, shutter):
+    """Frame 3 shows what is keyed at 1.5; the shutter and the frames around it are on the clock's side."""
+    import bpy
+
+    scene = bpy.context.scene
+    moving = scenes.curves("Moving", scenes.line())
+    scenes.keyframes(moving, "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    make_linear(moving)
+    scene.render.frame_map_old, scene.render.frame_map_new = 100, 200
+    scene.frame_set(3)
+    if shutter is None:
+        bpy.context.view_layer.use_pass_vector = True
+        _, settings = render(lisle)
+        found, expected = [settings["before"], settings["after"]], (1.0, 2.0)
+    else:
+        use_motion_blur(shutter)
+        found, expected = render(lisle)[0], (1.375, 1.5, 1.625)
+    places = [step.entries[0].transform[0, 3] for step in found]
+    np.testing.assert_allclose(places, expected, atol=1e-5)
+
+
 def test_vectors_see_the_frames_before_and_after(lisle):
     import bpy
 
@@ -122,7 +144,7 @@ def use_all_passes(layer):
         setattr(layer, f"use_pass_{name}", True)
     layer.use_pass_cryptomatte_material = True
     layer.pass_cryptomatte_depth = 4
-    for name in (*LIGHT, "denoising", "tangent", "alpha"):
+    for name in (*LIGHT, "denoising", "tangent", "coverage"):
         setattr(layer.lisle, f"use_pass_{name}", True)
 
 
@@ -130,21 +152,20 @@ def test_passes_have_the_sockets_of_other_engines(lisle):
     import bpy
 
     scene, layer = bpy.context.scene, bpy.context.view_layer
-    use_all_passes(layer)
     if bpy.app.version >= (5, 0, 0):
         tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
     else:
         scene.use_nodes = True
         tree = scene.node_tree
     node = tree.nodes.new("CompositorNodeRLayers")
-    layer.update_render_passes()
+    use_all_passes(layer)
     ours = {socket.name for socket in node.outputs if socket.enabled}
     scene.render.engine, scene.cycles.use_denoising = "CYCLES", False
     layer.update_render_passes()
     theirs = {socket.name for socket in node.outputs if socket.enabled}
     assert "Vector" in theirs and "CryptoMaterial01" in theirs
     assert theirs <= ours, theirs - ours
-    extra = {"Denoising Albedo", "Denoising Normal", *(name.title() for name in LIGHT), "Tangent"}
+    extra = {"Denoising Albedo", "Denoising Normal", *(name.title() for name in LIGHT), "Tangent", "Coverage"}
     assert extra <= ours
     assert "CryptoObject02" not in ours
 

@@ -79,7 +79,7 @@ def test_borders_and_passes(lisle, tmp_path):
     lit_yarn()
     settings().method = "REFERENCE"
     layer, render = bpy.context.view_layer, bpy.context.scene.render
-    layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = layer.lisle.use_pass_alpha = True
+    layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = layer.lisle.use_pass_coverage = True
     whole = scenes.render_channels(tmp_path / "whole.exr", multilayer=True)
     render.use_border = render.use_crop_to_border = True
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.25, 0.75

@@ -63,7 +63,7 @@ def test_passes_are_in_world_space(lisle, tmp_path):
     bpy.data.objects["Upper"].pass_index, bpy.data.objects["Lower"].pass_index = 3, 5
     layer = bpy.context.view_layer
     layer.use_pass_z = layer.use_pass_normal = layer.use_pass_object_index = True
-    layer.lisle.use_pass_tangent = layer.lisle.use_pass_alpha = True
+    layer.lisle.use_pass_tangent = layer.lisle.use_pass_coverage = True
     channels = scenes.render_channels(tmp_path / "a.exr", multilayer=True)
     channels = {name.partition(".")[2]: picture for name, picture in channels.items()}
     rows = (3 - (np.arange(48) + 0.5) / 8)[:, None] * np.ones(64)
@@ -75,7 +75,7 @@ def test_passes_are_in_world_space(lisle, tmp_path):
         assert np.median(channels["Depth.Z"][core]) == pytest.approx(9.6, abs=0.15)
         assert channels["Normal.Z"][core].mean() > 0.5
         assert np.abs(channels["Tangent.X"][core]).mean() > 0.5
-    np.testing.assert_array_equal(channels["Alpha.A"], channels["Combined.A"])
+    np.testing.assert_array_equal(channels["Coverage.A"], channels["Combined.A"])
     assert channels["Depth.Z"][0, 0] == pytest.approx(1e10) and index[0, 0] == 0
 
 
