@@ -30,7 +30,7 @@ class RestShapeError(GeometryError):
         super().__init__(
             object_name,
             f"{reason} (frame {frame} against reference frame {reference_frame}). "
-            "Choose another reference frame, or turn on 'Re-measure Each Frame' in the object's Lisle panel",
+            "Choose another reference frame, or turn on 'Re-measure Each Frame' in Object › Yarn",
         )
         self.frame = frame
         self.reference_frame = reference_frame
@@ -38,3 +38,8 @@ class RestShapeError(GeometryError):
 
 class Cancelled(LisleError):
     """The user stopped the render."""
+
+
+def message_of_bug(error):
+    """What to tell the user about an exception that is none of the above; its trace goes to the console."""
+    return f"{type(error).__name__}: {error} (this is a bug in Lisle, the console has its trace)"

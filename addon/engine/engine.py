@@ -12,7 +12,7 @@ import weakref
 
 import bpy
 
-from ..core.errors import Cancelled, LisleError
+from ..core.errors import Cancelled, LisleError, message_of_bug
 from ..export.view import view_of
 from . import job
 from .frame import draw
@@ -110,4 +110,4 @@ def _message(error):
     if isinstance(error, LisleError):
         return str(error)
     traceback.print_exception(error)
-    return f"{type(error).__name__}: {error} (this is a bug in Lisle, the console has its trace)"
+    return message_of_bug(error)

@@ -4,7 +4,7 @@
 import itertools
 
 from .. import native
-from ..core.errors import LisleError
+from ..core.errors import LisleError, message_of_bug
 from ..core.painter import Task
 from . import painting
 from .screen import Screen
@@ -25,23 +25,26 @@ class Viewport:
         self._on_news = on_news
         self._screen = Screen()
         self._snapshot = None
-        self._problem = None
+        self.problem = None
+        """Why nothing is drawn, in words; None if all is well."""
 
     def update(self, space, depsgraph):
         """Reads the scene: something in it has changed, though perhaps nothing that is seen here."""
+        old, self._snapshot, self.problem = self._snapshot, None, None
         try:
             new = Snapshot(native.module(), depsgraph, lambda obj: obj.visible_in_viewport_get(space))
         except LisleError as error:
-            self._snapshot, self._problem = None, str(error)
+            self.problem = str(error)
             return
-        if self._snapshot is None or not new.shows_the_same_as(self._snapshot):
-            self._snapshot = new
-        self._problem = None
+        except Exception as error:
+            self.problem = message_of_bug(error)
+            raise
+        self._snapshot = new if old is None or not new.shows_the_same_as(old) else old
 
     def draw(self, view):
         """Draws a core.view.View as the whole picture. Returns a line for the status."""
         if view.is_empty or self._snapshot is None:
-            return self._problem or ""
+            return self.problem or ""
         picture, status = self._picture(view)
         if picture is not None:
             self._screen.draw(picture, view)

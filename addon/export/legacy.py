@@ -54,7 +54,7 @@ def _refuse_modifiers_of_the_tube(obj):
                 obj.name,
                 f"its modifier '{modifier.name}' works on the bevelled mesh, which leaves no curve to draw yarn along. "
                 "Turn on 'Apply on Spline' in the modifier's header, or set the curve's bevel depth to 0 "
-                "and the yarn radius in the object's Lisle panel",
+                "and the yarn radius in Object › Yarn",
             )
 
 

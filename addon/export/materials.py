@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Blender material's Lisle settings as native yarn and material."""
 
+from ..core.errors import SceneError
 from ..presets import DEFAULT_FIBER, DEFAULT_YARN
 
 
-def yarn_and_material(lisle, material):
-    """(lisle.Yarn, lisle.Material) of a `bpy.types.Material`, or the defaults for None."""
+def yarn_and_material(lisle, material, object_name):
+    """(lisle.Yarn, lisle.Material) of a `bpy.types.Material`, or the defaults for None.
+
+    Raises SceneError with the material's name, and that of the object that has it, where its numbers make no yarn.
+    """
     if material is None:
         return lisle.Yarn.preset(DEFAULT_YARN), lisle.Material.preset(DEFAULT_FIBER)
-    return _native(lisle, material.lisle.yarn), _native(lisle, material.lisle.fiber)
+    try:
+        return _native(lisle, material.lisle.yarn), _native(lisle, material.lisle.fiber)
+    except lisle.InputError as error:
+        raise SceneError(f"object '{object_name}': material '{material.name}': {error}") from error
 
 
 def _native(lisle, group):

@@ -56,8 +56,8 @@ class Placement:
     is_holdout: bool
 
     def order(self):
-        """Sorts placements the same way in every process."""
-        return self.key, self.identity, self.world_from_object.tobytes()
+        """Sorts placements the same way in every process; equal if they look the same."""
+        return self.key, self.identity, self.world_from_object.tobytes(), self.is_holdout
 
 
 @dataclass
@@ -172,7 +172,7 @@ def _read_parts(lisle, obj, geometry, depsgraph):
             return
         if settings.yarn_radius > 0 and obj.type != "CURVE":
             arrays = _with_radius(arrays, settings.yarn_radius)
-        native = [yarn_and_material(lisle, material) for material in materials or [None]]
+        native = [yarn_and_material(lisle, material, obj.name) for material in materials or [None]]
         labels = [(material.name, material.pass_index) if material else ("", 0) for material in materials or [None]]
         geometry = Geometry((name, *path), obj.name, arrays, native, labels, reference_frame, settings.remeasure)
         parts.append((geometry, transforms))

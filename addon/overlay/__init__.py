@@ -4,7 +4,10 @@
 import bpy
 
 from . import handler
+from .handler import problem
 from .operator import LISLE_OT_toggle_overlay
+
+__all__ = ("problem", "register", "unregister")
 
 
 def register():

@@ -22,6 +22,12 @@ class _Shown:
 _shown = {}
 """By the region's address."""
 
+_layout = None
+"""Of the screen that was drawn last: its address and number of regions."""
+
+_said = None
+"""The problem that was printed last."""
+
 _version = 0
 """Counts what may have changed the scene."""
 
@@ -32,14 +38,16 @@ def _draw():
     if not _is_on(scene, space):
         _close(address)
         return
+    _forget_closed(context.screen, address)
     try:
         shown = _shown.get(address)
         if shown is None:
             shown = _shown[address] = _Shown(address)
         version = (_version, scene.name_full, context.view_layer.name, space.local_view is not None)
         if shown.version != version:
-            shown.viewport.update(space, context.evaluated_depsgraph_get())
             shown.version = version
+            shown.viewport.update(space, context.evaluated_depsgraph_get())
+            _say(shown.viewport.problem)
         view = view_of(context, scene)
         shown.viewport.draw_over(view, lighting_of(space, view))
     except Exception:  # Blender would go on calling it
@@ -61,6 +69,32 @@ def _redraw(address):
                     region.tag_redraw()
                     return True
     return _close(address)
+
+
+def _forget_closed(screen, address):
+    """Drops the pictures of regions that are no more, when `address` is a new one or a screen has changed."""
+    global _layout
+    layout = screen.as_pointer(), sum(len(area.regions) for area in screen.areas)
+    if not _shown or (layout == _layout and address in _shown):
+        return
+    _layout = layout
+    regions = {region.as_pointer() for screen in bpy.data.screens for area in screen.areas for region in area.regions}
+    for closed in _shown.keys() - regions:
+        _close(closed)
+
+
+def _say(problem):
+    """Prints what keeps the overlay from showing yarn, once."""
+    global _said
+    if problem != _said:
+        _said = problem
+        if problem is not None:
+            print(f"Lisle: {problem}", flush=True)
+
+
+def problem():
+    """What keeps a viewport's overlay from showing yarn; None if nothing does."""
+    return next((shown.viewport.problem for shown in _shown.values() if shown.viewport.problem), None)
 
 
 def _close(address):

@@ -3,11 +3,18 @@
 
 import bpy
 
+from .. import overlay
+from .panel import wrapped_label
+
 
 def _draw(self, context):
     column = self.layout.column()
     column.active = context.space_data.overlay.show_overlays
-    column.prop(context.scene.lisle, "show_overlay")
+    settings = context.scene.lisle
+    column.prop(settings, "show_overlay")
+    problem = overlay.problem()
+    if settings.show_overlay and problem is not None:
+        wrapped_label(column, problem, icon="ERROR", width=40)
 
 
 def register():

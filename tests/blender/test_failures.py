@@ -63,6 +63,19 @@ def break_points(addon, lisle):
     return "point 4 is not finite"
 
 
+def break_yarn(addon, lisle):
+    import bpy
+
+    def refuse(self, **values):
+        raise lisle.InputError("yarn parameter `ply_twist` is 0")
+
+    lisle.Yarn.replace = refuse
+    material = bpy.data.materials.new("Wool")
+    bpy.data.objects["Yarn"].data.materials.append(material)
+    material.lisle.yarn.customize = True
+    return "object 'Yarn': material 'Wool': yarn parameter `ply_twist` is 0"
+
+
 BREAKS = [value for name, value in sorted(globals().items()) if name.startswith("break_")]
 
 

@@ -70,6 +70,22 @@ def test_modifiers_and_smooth_faces_count(lisle):
     assert (np.sum(mesh.normals * outward, axis=-1) > 0.9).all()
 
 
+@pytest.mark.parametrize("modifier", [None, "SUBSURF"])
+def test_a_mesh_in_edit_mode_is_there(lisle, modifier):
+    import bpy
+    from lisle_blender.export.scene import collect
+
+    obj = cube()
+    if modifier is not None:
+        subdivision = obj.modifiers.new("Modifier", modifier)
+        subdivision.levels = subdivision.render_levels = 1
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.mode_set(mode="EDIT")
+    (placement,) = collect(lisle, bpy.context.evaluated_depsgraph_get(), print).meshes
+    assert len(placement.surface.triangles) == (12 if modifier is None else 48)
+    assert [len(mesh.corners) for mesh in drawn(lisle)] == [len(placement.surface.triangles)]
+
+
 def test_each_material_is_a_mesh_of_its_base_colour(lisle):
     linked = material("Linked", (1, 0, 0, 1))
     tree = linked.node_tree
@@ -107,6 +123,21 @@ def test_yarn_can_be_a_holdout(lisle):
         scenes.curves(name, scenes.line()).is_holdout = name == "Hole"
     content = collect(lisle, bpy.context.evaluated_depsgraph_get(), print)
     assert {placement.name: placement.is_holdout for placement in content.placements} == {"Seen": False, "Hole": True}
+
+
+def test_views_notice_that_yarn_becomes_a_holdout(lisle):
+    import bpy
+    from lisle_blender.export.scene import collect
+
+    obj = scenes.curves("Yarn", scenes.line())
+
+    def content():
+        return collect(lisle, bpy.context.evaluated_depsgraph_get(), print)
+
+    before = content()
+    assert content().equals(before)
+    obj.is_holdout = True
+    assert not content().equals(before)
 
 
 def test_instances_share_their_geometry(lisle):

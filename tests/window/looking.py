@@ -5,6 +5,14 @@ import time
 import numpy as np
 from PIL import Image
 
+IMPOSSIBLE = """
+material = bpy.data.materials.new('Impossible')
+material.lisle.yarn.customize = True
+material.lisle.yarn.ply_twist = 0
+bpy.data.objects['Yarn'].data.materials.append(material)
+"""
+"""Gives the yarn a material of which there is no yarn."""
+
 
 def srgb(linear):
     """The 8-bit values of scene-linear ones, as the view transform Standard shows them."""

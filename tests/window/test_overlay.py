@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 import pytest
-from looking import at, screen, settled, srgb, world
+from looking import IMPOSSIBLE, at, screen, settled, srgb, world
 
 PICTURE = """
 view, = painter()._views.values()
@@ -87,6 +87,37 @@ def test_the_switch(over):
     # The engine's own shading shows the yarn already.
     over.do("scene.render.engine = 'LISLE'; space().shading.type = 'RENDERED'")
     settled(over, views=1)
+
+
+@pytest.mark.parametrize("change", ["toggle_quadview", "split"])
+def test_regions_that_are_closed_are_forgotten(over, change):
+    settled(over)
+    if change == "toggle_quadview":
+        call = "operator(bpy.ops.screen.region_quadview)"
+        there, back = call, call
+    else:
+        there = "operator(bpy.ops.screen.area_split, direction='VERTICAL', factor=0.5)"
+        back = "operator(bpy.ops.screen.area_close, area=areas()[-1])"
+    for _ in range(3):
+        over.do(there)
+        over.until("answer = len(painter()._views) > 1 and is_settled(len(painter()._views))")
+        over.do(back)
+        over.do("[area.tag_redraw() for area in areas()]")
+        settled(over, views=1)
+    assert over.do("answer = len(sys.modules[PACKAGE + '.overlay.handler']._shown)") == 1
+
+
+def test_an_impossible_yarn_is_said_once(over):
+    settled(over)
+    over.do(IMPOSSIBLE)
+    over.until("answer = sys.modules[PACKAGE + '.overlay'].problem()")
+    for _ in range(3):
+        over.do("areas()[0].tag_redraw(); bpy.ops.wm.redraw_timer(type='DRAW_WIN_SWAP', iterations=1)")
+    log = over.news()
+    assert log.count("object 'Yarn': material 'Impossible': ") == 1 and "Traceback" not in log, log
+    over.do("material.lisle.yarn.customize = False")
+    over.until("answer = sys.modules[PACKAGE + '.overlay'].problem() is None")
+    settled(over)
 
 
 RECORD = """

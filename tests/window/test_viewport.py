@@ -4,7 +4,7 @@ import time
 
 import numpy as np
 import pytest
-from looking import at, screen, settled, srgb, world, yarn_mask
+from looking import IMPOSSIBLE, at, screen, settled, srgb, world, yarn_mask
 from PIL import Image
 
 ALONG = "answer = on_screen([(x, y, 0) for x in (-2.5, 0, 2.5) for y in (-1, 0, 1)])"
@@ -71,6 +71,26 @@ def test_a_finished_view_is_the_final_picture(view, tmp_path):
     assert final.shape == shown.shape
     assert np.abs(final[4:-4, 4:-4] - shown[4:-4, 4:-4]).mean() < 2
     assert final.std() > 10
+
+
+def test_an_impossible_yarn_is_not_drawn_as_it_was(view):
+    world(view, (0.2, 0.4, 0.6))
+    settled(view)
+    (middle,) = view.do("answer = on_screen([(0, 0, 0)])")
+    view.do(IMPOSSIBLE)
+    view.do(
+        "import gc\n"
+        "Viewport = sys.modules[PACKAGE + '.engine.viewport'].Viewport\n"
+        "def problems():\n"
+        "    return [each.problem for each in gc.get_objects() if isinstance(each, Viewport)]\n"
+    )
+    (problem,) = view.until("answer = [problem for problem in problems() if problem]")
+    assert problem.startswith("object 'Yarn': material 'Impossible': ") and "ply_twist" in problem
+    grey = at(screen(view, keep="impossible"), middle)
+    assert np.abs(grey - at(screen(view), (middle[0], middle[1] + 150))).max() <= 2
+    view.do("material.lisle.yarn.customize = False")
+    view.until("answer = not any(problems())")
+    assert np.abs(at(settled(view), middle) - grey).max() > 10
 
 
 def test_a_transparent_film_shows_what_is_behind(view):

@@ -80,6 +80,9 @@ class _Values:
     def __init__(self, **values):
         self.__dict__.update(values)
 
+    def __eq__(self, other):
+        return self.__dict__ == other.__dict__
+
     @classmethod
     def presets(cls):
         return list(cls.PRESETS)
