@@ -137,7 +137,7 @@ class Painter:
     def close(self, name):
         """Forgets a view."""
         with self._condition:
-            self._views.pop(name, None)
+            self._close(name)
 
     def pause(self, paused=True):
         """Draws nothing more until it is told to go on, with `pause(False)`."""
@@ -148,7 +148,8 @@ class Painter:
     def stop(self):
         """Forgets all views and ends the thread; returns when it has ended."""
         with self._condition:
-            self._views.clear()
+            for name in list(self._views):
+                self._close(name)
             self._stopping = True
             self._paused = False
             thread, self._thread = self._thread, None
@@ -156,20 +157,33 @@ class Painter:
         if thread is not None:
             thread.join()
 
+    def _close(self, name):
+        view = self._views.pop(name, None)
+        if view is not None:
+            # Both know the view: with its pictures and its scene, they would wait for the garbage collector.
+            view.steps = view.error = None
+            if self._last is view:
+                self._last = None
+
     def _run(self):
-        while True:
-            with self._condition:
-                self._condition.wait_for(lambda: self._stopping or self._next() is not None)
-                if self._stopping:
-                    return
-                view = self._last = self._next()
-                steps = view.steps
-            try:
-                next(steps)
-            except StopIteration:
-                self._finish(view, steps, None)
-            except Exception as error:  # it is shown where the picture would be
-                self._finish(view, steps, error)
+        while self._step():
+            pass
+
+    def _step(self):
+        """Waits for something to do and does it; False when there will be nothing more. Holds on to nothing."""
+        with self._condition:
+            self._condition.wait_for(lambda: self._stopping or self._next() is not None)
+            if self._stopping:
+                return False
+            view = self._last = self._next()
+            steps = view.steps
+        try:
+            next(steps)
+        except StopIteration:
+            self._finish(view, steps, None)
+        except Exception as error:  # it is shown where the picture would be
+            self._finish(view, steps, error)
+        return True
 
     def _finish(self, view, steps, error):
         with self._condition:

@@ -59,6 +59,7 @@ class LisleRenderEngine(bpy.types.RenderEngine):
         for sentence in job.not_said_before(notes):
             self.report({"INFO"}, f"Lisle: {sentence}")
         message = _message(error)
+        del error  # it knows this frame and what was drawn, which would wait for the garbage collector
         if message is not None:
             self.report({"ERROR"}, f"Lisle: {message}")
 

@@ -42,6 +42,7 @@ def _draw():
     try:
         shown = _shown.get(address)
         if shown is None:
+            _close_gone()
             shown = _shown[address] = _Shown(address)
         version = (_version, scene.name_full, context.view_layer.name, space.local_view is not None)
         if shown.version != version:
@@ -60,15 +61,19 @@ def _is_on(scene, space):
     return not (space.shading.type == "RENDERED" and scene.render.engine == "LISLE")
 
 
+def _regions():
+    """All that there are, by their addresses."""
+    windows = bpy.context.window_manager.windows
+    return {r.as_pointer(): r for window in windows for area in window.screen.areas for r in area.regions}
+
+
 def _redraw(address):
     """Has a region redrawn; whether it is still there."""
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            for region in area.regions:
-                if region.as_pointer() == address:
-                    region.tag_redraw()
-                    return True
-    return _close(address)
+    region = _regions().get(address)
+    if region is None:
+        return _close(address)
+    region.tag_redraw()
+    return True
 
 
 def _forget_closed(screen, address):
@@ -102,6 +107,12 @@ def _close(address):
     if shown is not None:
         shown.viewport.close()
     return False
+
+
+def _close_gone():
+    """Nobody says when a region is removed."""
+    for address in _shown.keys() - _regions().keys():
+        _close(address)
 
 
 def _close_all():

@@ -1,7 +1,9 @@
 """The thread that draws views: what is shown is always the view that was asked for, and it ends when it is told to."""
 
+import gc
 import threading
 import time
+import weakref
 
 import numpy as np
 import pytest
@@ -183,3 +185,31 @@ def test_a_closed_view_is_drawn_no_more(painter):
     calls = len(scene.calls)
     time.sleep(0.1)
     assert len(scene.calls) == calls and painter.picture("a") is None and not painter.busy()
+
+
+@pytest.mark.parametrize("how", ["close", "stop"])
+@pytest.mark.parametrize("fails", [False, True])
+def test_what_a_closed_view_held_is_freed_at_once(painter, how, fails):
+    """Not when the garbage collector comes round to it: it counts objects, not their bytes."""
+    scene = Scene(0.01)
+
+    def draw(*arguments):
+        if fails and arguments[3] > 0:
+            raise ValueError("broken")
+        return scene.draw(*arguments)
+
+    gc.collect()
+    gc.disable()
+    try:
+        painter.show("a", Task("k", SIZE, (0, 0, *SIZE), 10_000, draw))
+        held = weakref.ref(draw), weakref.ref(painter.picture("a", 10))
+        del draw
+        time.sleep(0.3)
+        assert held[0]() is not None
+        painter.close("a") if how == "close" else painter.stop()
+        end = time.monotonic() + 20
+        while any(reference() is not None for reference in held):
+            assert time.monotonic() < end, "held by a cycle"
+            time.sleep(0.01)
+    finally:
+        gc.enable()

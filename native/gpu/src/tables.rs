@@ -31,39 +31,45 @@ fn pack_shared_exponent(color: [f32; 3]) -> u32 {
     code(color[0]) | (code(color[1]) << 9) | (code(color[2]) << 18) | (((exponent + BIAS) as u32) << 27)
 }
 
-/// One buffer of tables and the offsets into it.
+/// Tables one after the other.
 #[derive(Default)]
-pub(crate) struct TableBuffer {
-    pub words: Vec<u32>,
-    pub yarns: Vec<layout::Yarn>,
-    pub materials: Vec<layout::Material>,
-}
+pub(crate) struct Words(pub Vec<u32>);
 
-impl TableBuffer {
+impl Words {
     fn append(&mut self, values: impl IntoIterator<Item = f32>) -> u32 {
         self.append_words(values.into_iter().map(f32::to_bits))
     }
 
     fn append_words(&mut self, words: impl IntoIterator<Item = u32>) -> u32 {
-        let first = self.words.len() as u32;
-        self.words.extend(words);
+        let first = self.0.len() as u32;
+        self.0.extend(words);
         first
     }
+}
 
-    pub fn add_yarn(&mut self, yarn: &Yarn, tables: &Tables) {
+/// A kind of yarn as the shaders read it: 13 MiB, mostly of its core texture.
+pub(crate) struct YarnTables {
+    words: Words,
+    /// Its offsets are from the first of these words.
+    kind: layout::Yarn,
+}
+
+impl YarnTables {
+    pub fn new(yarn: &Yarn, tables: &Tables) -> Self {
+        let mut words = Words::default();
         let fibers = FiberTable::new(yarn);
         let rows = (0..fibers.radius.len())
             .flat_map(|i| [fibers.radius[i], fibers.angle_turns[i], fibers.migration_turns[i]].map(|x| x as f32));
-        let fiber_table = self.append(rows);
+        let fiber_table = words.append(rows);
         let core = &tables.core_fiber;
         let core_slope = core.texels.iter().flat_map(|t| [t[2].abs(), t[3].abs()]).fold(f32::MIN_POSITIVE, f32::max);
-        let core_table = self.append_words(core.texels.iter().flat_map(|[height, offset, dh, dv]| {
+        let core_table = words.append_words(core.texels.iter().flat_map(|[height, offset, dh, dv]| {
             [pack_snorm([0.5 * height, *offset]), pack_snorm([dh / core_slope, dv / core_slope])]
         }));
-        let shadow_table = self.append(tables.self_shadow.optical_depth.iter().copied());
-        let extinction_table = self.append(tables.self_shadow.extinction.iter().copied());
-        let seen_sky_table = self.append(tables.self_shadow.seen_sky.iter().copied());
-        let occlusion_table = self.append(tables.occlusion.visibility.iter().copied());
+        let shadow_table = words.append(tables.self_shadow.optical_depth.iter().copied());
+        let extinction_table = words.append(tables.self_shadow.extinction.iter().copied());
+        let seen_sky_table = words.append(tables.self_shadow.seen_sky.iter().copied());
+        let occlusion_table = words.append(tables.occlusion.visibility.iter().copied());
 
         let outer = yarn.outer_radius();
         let (loop_chance, hair_chance) = yarn.flyaway_chances();
@@ -75,7 +81,7 @@ impl TableBuffer {
         let [tip_span_mean, tip_span_deviation] = scaled(fly.hair_r_span, axis);
         let [width_mean, width_deviation] = scaled(fly.hair_z_span, yarn.migration_period());
         let [turns_mean, turns_deviation] = scaled(fly.hair_theta_span, std::f64::consts::TAU);
-        self.yarns.push(layout::Yarn {
+        let kind = layout::Yarn {
             plies: yarn.plies,
             fibers: yarn.fibers_per_ply,
             flyaway_fibers: yarn.flyaway_fibers(),
@@ -121,14 +127,40 @@ impl TableBuffer {
             seen_sky_size: tables.self_shadow.seen_sky_size as u32,
             through_circle: tables.self_shadow.through_circle,
             padding: 0,
+        };
+        words.0.shrink_to_fit();
+        Self { words, kind }
+    }
+}
+
+/// One buffer of tables and the offsets into it.
+#[derive(Default)]
+pub(crate) struct TableBuffer {
+    pub words: Words,
+    pub yarns: Vec<layout::Yarn>,
+    pub materials: Vec<layout::Material>,
+}
+
+impl TableBuffer {
+    pub fn add_yarn(&mut self, yarn: &YarnTables) {
+        let first = self.words.append_words(yarn.words.0.iter().copied());
+        let kind = &yarn.kind;
+        self.yarns.push(layout::Yarn {
+            fiber_table: first + kind.fiber_table,
+            core_table: first + kind.core_table,
+            shadow_table: first + kind.shadow_table,
+            extinction_table: first + kind.extinction_table,
+            seen_sky_table: first + kind.seen_sky_table,
+            occlusion_table: first + kind.occlusion_table,
+            ..*kind
         });
     }
 
     /// Offset of a transport table: albedo, through, then the three tables of [`Transport`].
     pub fn add_transport(&mut self, transport: &Transport) -> u32 {
         let colors = [transport.albedo, transport.through].map(|color| color.as_vec3().to_array());
-        let first = self.append(colors.into_iter().flatten());
-        self.append_words(
+        let first = self.words.append(colors.into_iter().flatten());
+        self.words.append_words(
             transport
                 .sides
                 .iter()
@@ -149,7 +181,7 @@ impl TableBuffer {
             tables.ambient_transmit,
         ];
         let table_size = columns[0].len() as u32;
-        let table = self.append(columns.iter().flatten().map(|x| *x as f32));
+        let table = self.words.append(columns.iter().flatten().map(|x| *x as f32));
         let color = |c: DVec3| c.as_vec3();
         self.materials.push(layout::Material {
             color_r: color(material.color_r),
@@ -180,7 +212,7 @@ pub(crate) fn bound(yarn: &Yarn) -> f64 {
     (yarn.ply_distance() + ply + yarn.fiber_radius) / yarn.outer_radius()
 }
 
-/// What was computed for the most recent keys.
+/// What was computed, the most recently used last.
 struct Recent<K, V>(Vec<(K, Arc<V>)>);
 
 impl<K, V> Default for Recent<K, V> {
@@ -190,18 +222,21 @@ impl<K, V> Default for Recent<K, V> {
 }
 
 impl<K: PartialEq, V> Recent<K, V> {
-    fn find(&self, key: &K) -> Option<Arc<V>> {
-        self.0.iter().find(|(known, _)| known == key).map(|(_, value)| Arc::clone(value))
+    fn find(&mut self, key: &K) -> Option<Arc<V>> {
+        let place = self.0.iter().position(|(known, _)| known == key)?;
+        self.0[place..].rotate_left(1);
+        self.0.last().map(|(_, value)| Arc::clone(value))
     }
 
     fn keep(&mut self, key: K, value: V) -> Arc<V> {
-        const KEPT: usize = 32;
         let value = Arc::new(value);
-        if self.0.len() == KEPT {
-            self.0.remove(0);
-        }
         self.0.push((key, Arc::clone(&value)));
         value
+    }
+
+    /// Keeps so many.
+    fn forget(&mut self, most: usize) {
+        self.0.drain(..self.0.len().saturating_sub(most));
     }
 }
 
@@ -218,17 +253,26 @@ type TransportKey = (Yarn, Material, u32);
 /// Tables of fewer photons are drafts, made sooner than a folder would have room for one of every material that a user tries.
 const LEAST_KEPT_PHOTONS: u32 = 50_000;
 
-/// Precomputed tables of recent yarns and materials, so that a change of camera costs none of them.
+/// Precomputed tables of recent yarns and materials, so that going back to one costs none of them.
 #[derive(Default)]
 pub(crate) struct TableCache {
-    yarns: Recent<Yarn, Tables>,
+    yarns: Recent<Yarn, YarnTables>,
     transports: Recent<TransportKey, Transport>,
     pub store: Option<TransportStore>,
 }
 
 impl TableCache {
-    pub fn yarn(&mut self, yarn: &Yarn) -> Arc<Tables> {
-        self.yarns.find(yarn).unwrap_or_else(|| self.yarns.keep(yarn.clone(), Tables::new(yarn)))
+    pub fn yarn(&mut self, yarn: &Yarn) -> Arc<YarnTables> {
+        self.yarns
+            .find(yarn)
+            .unwrap_or_else(|| self.yarns.keep(yarn.clone(), YarnTables::new(yarn, &Tables::new(yarn))))
+    }
+
+    /// Keeps what was used last: as much as a scene of so many needs, and for whoever tries one after the other, or has several views, at least
+    /// eight kinds of yarn, 13 MiB each, and 16 tables of multiple scattering, 1.5 MiB each, of which drafts have their own.
+    pub fn forget(&mut self, yarns: usize, transports: usize) {
+        self.yarns.forget(yarns.max(8));
+        self.transports.forget((2 * transports).max(16));
     }
 
     /// A table that was made before, in this session or another.
@@ -285,6 +329,19 @@ mod tests {
     use lisle_precompute::TransportSize;
 
     use super::*;
+
+    #[test]
+    fn what_was_used_last_is_kept() {
+        let mut recent = Recent::default();
+        for key in 0..4 {
+            recent.keep(key, 10 * key);
+        }
+        assert_eq!(recent.find(&1).as_deref(), Some(&10));
+        recent.forget(2);
+        assert_eq!([0, 1, 2, 3].map(|key| recent.find(&key).is_some()), [false, true, false, true]);
+        recent.forget(5);
+        assert_eq!(recent.0.len(), 2);
+    }
 
     fn unpack(word: u32) -> [f32; 3] {
         let scale = 2.0_f32.powi((word >> 27) as i32 - 24);

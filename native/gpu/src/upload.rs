@@ -206,15 +206,16 @@ impl SceneBuffers {
             buffers.transports.len() == wanted.len() && buffers.transports.iter().zip(&wanted).all(|(a, b)| same(a, b));
         if buffers.kinds != kinds || buffers.materials != materials || !same_transports {
             let mut tables = TableBuffer::default();
-            kinds.iter().for_each(|yarn| tables.add_yarn(yarn, &cache.yarn(yarn)));
+            kinds.iter().for_each(|yarn| tables.add_yarn(&cache.yarn(yarn)));
             materials.iter().for_each(|material| tables.add_material(material));
             wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
             buffers.transports = wanted;
             buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = storage(gpu, "materials", &tables.materials)?;
-            buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words)?;
+            buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words.0)?;
             (buffers.kinds, buffers.materials) = (kinds, materials);
         }
+        cache.forget(buffers.kinds.len(), transports.len());
         Ok((buffers, which))
     }
 
