@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import job, painting
+from . import job, painting, renderer
 from .engine import LisleRenderEngine
 
 
@@ -17,3 +17,4 @@ def unregister():
     painting.unregister()
     job.unregister()
     bpy.utils.unregister_class(LisleRenderEngine)
+    renderer.drop()

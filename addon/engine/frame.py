@@ -14,7 +14,7 @@ from ..export.scene import collect
 from ..export.world import read_world
 from . import reference
 from .assembly import add_objects
-from .job import REST_SHAPES, SURFACES
+from .job import REST_SHAPES, SURFACES, stop_if_asked
 from .motion import at_times, present, shutter_times
 from .passes import wanted_passes
 from .renderer import drop, renderer
@@ -48,8 +48,14 @@ def _draw(lisle, engine, depsgraph, size, note):
     if render.threads_mode == "FIXED":
         lisle.set_threads(render.threads)  # of no effect once anything was drawn in this process
 
+    shown = None
+
     def progress(fraction):
-        engine.update_progress(fraction)
+        """Asked again and again, also where nothing is new."""
+        nonlocal shown
+        if fraction != shown:
+            shown = fraction
+            engine.update_progress(fraction)
         return not engine.test_break()
 
     engine.update_stats("", "Drawing")
@@ -123,7 +129,9 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
     content = collect(lisle, depsgraph, note)
     if not (content.placements or content.meshes):
         note("the view layer shows neither curves nor meshes")
+    stop_if_asked(engine)
     at_rest = REST_SHAPES.find(lisle, engine, depsgraph, content)
+    stop_if_asked(engine)
     camera = engine.camera_override or depsgraph.scene.camera
     world = read_world(lisle, depsgraph.scene.world, note)
 

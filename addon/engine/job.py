@@ -7,6 +7,7 @@ It is forgotten between jobs, because anything may have been edited there.
 import bpy
 from bpy.app.handlers import persistent
 
+from ..core.errors import Cancelled
 from ..export.world import forget_images
 from .rest import RestShapes
 from .surfaces import Surfaces
@@ -22,6 +23,12 @@ def not_said_before(sentences):
     new = [sentence for sentence in dict.fromkeys(sentences) if sentence not in _said]
     _said.update(new)
     return new
+
+
+def stop_if_asked(engine):
+    """Raises Cancelled if the user wants no more of the picture."""
+    if engine.test_break():
+        raise Cancelled
 
 
 @persistent

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from ..export.camera import native_camera
 from ..export.scene import collect
+from .job import stop_if_asked
 
 
 def present(scene):
@@ -35,6 +36,7 @@ def at_times(lisle, engine, depsgraph, content, times, camera, size):
     found = []
     try:
         for time in times:
+            stop_if_asked(engine)
             whole = math.floor(time)
             engine.frame_set(whole, time - whole)
             moved = _moved(content, collect(lisle, depsgraph, lambda _: None))

@@ -164,7 +164,9 @@ def test_settings_reach_the_renderer(lisle):
     }  # fmt: skip
 
 
-def test_cancelled_render_ends_quietly(addon, lisle, monkeypatch):
+@pytest.mark.parametrize(("patience", "drawn"), [(0, 0), (1, 0), (2, 1)])
+def test_cancelled_render_ends_quietly(addon, lisle, monkeypatch, patience, drawn):
+    """It is asked after the scene and its rest shapes are read, and while it is drawn."""
     import bpy
 
     class Stopped:
@@ -177,9 +179,11 @@ def test_cancelled_render_ends_quietly(addon, lisle, monkeypatch):
             return getattr(self.engine, name)
 
         def test_break(self):
-            return True
+            nonlocal asked
+            asked += 1
+            return asked > patience
 
-    ends = []
+    asked, ends = 0, []
 
     def draw(engine, *args):
         try:
@@ -192,7 +196,7 @@ def test_cancelled_render_ends_quietly(addon, lisle, monkeypatch):
     scenes.curves("Yarn", scenes.line())
     monkeypatch.setattr(addon.engine.engine, "draw", draw)
     bpy.ops.render.render()
-    assert ends == ["cancelled"] and len(lisle.scenes) == 1
+    assert ends == ["cancelled"] and len(lisle.scenes) == drawn and asked == patience + 1
 
 
 def test_empty_scene_renders_an_empty_picture(lisle, tmp_path):

@@ -15,8 +15,8 @@ def test_progress_rises_to_one(draw):
     fractions = []
     draw(samples=4, progress=fractions.append)
     assert fractions == sorted(fractions)
-    assert len(fractions) >= 4
-    assert 0 < fractions[0] < fractions[-1] == 1
+    assert len(set(fractions)) >= 4
+    assert 0 <= fractions[0] < fractions[-1] == 1
 
 
 def test_the_callback_is_called_from_the_calling_thread(draw):

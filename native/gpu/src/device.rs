@@ -1,5 +1,6 @@
 //! Adapters and the device.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use crate::Error;
@@ -27,6 +28,8 @@ pub(crate) struct Gpu {
     pub timestamps: bool,
     /// First error that the driver or the validation reported outside of a call.
     pub failure: Arc<Mutex<Option<String>>>,
+    /// How often work was handed to the adapter.
+    pub submissions: Arc<AtomicU64>,
 }
 
 const WIDE_ATOMICS: wgpu::Features = wgpu::Features::SHADER_INT64.union(wgpu::Features::SHADER_INT64_ATOMIC_MIN_MAX);
@@ -98,11 +101,18 @@ impl Gpu {
             info,
             limits,
             failure,
+            submissions: Arc::default(),
         })
     }
 
     pub fn error(&self, reason: impl Into<String>) -> Error {
         Error::Device { adapter: self.info.name.clone(), reason: reason.into() }
+    }
+
+    /// Hands work to the adapter.
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) {
+        self.submissions.fetch_add(1, Ordering::Relaxed);
+        self.queue.submit([encoder.finish()]);
     }
 
     /// Waits for all work, then reports what went wrong in it.

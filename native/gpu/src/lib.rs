@@ -21,6 +21,7 @@ mod shader;
 mod tables;
 mod timing;
 mod upload;
+mod waiting;
 
 pub use aov::Aov;
 pub use device::{AdapterInfo, adapters};

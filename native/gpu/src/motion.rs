@@ -12,19 +12,19 @@ use crate::{Error, Object, Scene};
 ///
 /// Objects correspond by their order, and their yarns by their rest shape: [`lisle_core::strands::Yarns::with_points`]. Yarns, objects and
 /// camera move; all else is as at the first step.
-#[derive(Clone, Copy, Debug)]
-pub struct Exposure<'a> {
+#[derive(Clone, Debug)]
+pub struct Exposure {
     /// The scene at even steps from when the shutter opens to when it closes, at least one; between them everything moves evenly. What
     /// belongs to the pixel's centre alone, depth for example, is of the middle of that time.
-    pub steps: &'a [Scene],
+    pub steps: Vec<Scene>,
     /// The scene one frame before, and one after: for [`crate::Aov::Vector`].
-    pub neighbours: Option<[&'a Scene; 2]>,
+    pub neighbours: Option<[Scene; 2]>,
 }
 
-impl<'a> Exposure<'a> {
+impl Exposure {
     /// One moment.
-    pub fn still(scene: &'a Scene) -> Self {
-        Self { steps: std::slice::from_ref(scene), neighbours: None }
+    pub fn still(scene: Scene) -> Self {
+        Self { steps: vec![scene], neighbours: None }
     }
 }
 

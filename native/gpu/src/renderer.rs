@@ -2,14 +2,15 @@
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use lisle_precompute::TransportStore;
 
 use crate::aov::{NO_PLANE, Planes};
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
-use crate::frame::{FrameBuffers, FrameInput, Recorder};
+use crate::frame::{FrameBuffers, FrameInput, PictureListener, Recorder};
 use crate::mesh_raster::MeshPipelines;
 use crate::meshes::MeshBuffers;
 use crate::motion::{Motion, Neighbour};
@@ -17,11 +18,14 @@ use crate::pipelines::Pipelines;
 use crate::shader::{Film, Pass, Resolve};
 use crate::tables::TableCache;
 use crate::upload::SceneBuffers;
+use crate::waiting::{Turns, Waiting};
 use crate::{AdapterInfo, Aov, Error, Exposure, Image, Scene, Settings};
 
 /// How far a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
+    /// Another picture is being finished, or the scene made ready.
+    Preparing,
     /// Tables of multiple scattering, for yarns and materials that were never drawn before: steps of some hundredths of a second.
     Tables {
         /// Steps done, at most `total`.
@@ -40,19 +44,21 @@ pub enum Progress {
 
 /// Draws scenes on one adapter. Thread-safe: pictures are drawn one at a time.
 pub struct Renderer {
-    gpu: Gpu,
-    pipelines: Pipelines,
-    state: Mutex<State>,
+    adapter: AdapterInfo,
+    submissions: Arc<AtomicU64>,
+    drawing: Arc<Turns<Drawing>>,
 }
 
-#[derive(Default)]
-struct State {
+/// The device, and what is kept from picture to picture.
+struct Drawing {
+    gpu: Gpu,
+    pipelines: Pipelines,
+    /// Made for the first scene that has meshes.
+    mesh_pipelines: Option<MeshPipelines>,
     tables: TableCache,
     scene: Option<SceneBuffers>,
     sky: Option<SkyBuffers>,
     meshes: Option<MeshBuffers>,
-    /// Made for the first scene that has meshes.
-    mesh_pipelines: Option<MeshPipelines>,
     frame: Option<FrameBuffers>,
 }
 
@@ -77,27 +83,42 @@ impl Renderer {
 
     fn with_gpu(gpu: Gpu, wide: bool) -> Result<Self, Error> {
         let pipelines = Pipelines::new(&gpu, wide)?;
-        Ok(Self { gpu, pipelines, state: Mutex::default() })
+        let (adapter, submissions) = (gpu.info.clone(), Arc::clone(&gpu.submissions));
+        let drawing = Drawing {
+            gpu,
+            pipelines,
+            mesh_pipelines: None,
+            tables: TableCache::default(),
+            scene: None,
+            sky: None,
+            meshes: None,
+            frame: None,
+        };
+        Ok(Self { adapter, submissions, drawing: Arc::new(Turns::new(drawing)) })
     }
 
     /// Keeps tables of multiple scattering in a folder, for later sessions.
     #[must_use]
     pub fn with_store(self, folder: impl Into<PathBuf>) -> Self {
-        self.lock().tables.store = Some(TransportStore::new(folder));
+        if let Ok(mut drawing) = self.drawing.take(&mut || ControlFlow::Continue(())) {
+            drawing.tables.store = Some(TransportStore::new(folder));
+        }
         self
-    }
-
-    /// A panic elsewhere leaves at worst stale buffers behind, which an update replaces.
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The adapter in use.
     pub fn adapter(&self) -> &AdapterInfo {
-        &self.gpu.info
+        &self.adapter
     }
 
-    /// Draws a picture. `progress` is called after every sample, and before them while tables are made, and can stop the work.
+    /// How often pictures have handed work to the adapter.
+    pub fn submissions(&self) -> u64 {
+        self.submissions.load(Ordering::Relaxed)
+    }
+
+    /// Draws a picture. `progress` is called after every sample, and before them while tables are made, and again every few hundredths of a
+    /// second; it can stop the work. A picture that was stopped hands nothing more to the adapter; what the adapter has of it already may keep
+    /// the next picture waiting.
     ///
     /// The same scene and settings give the same bits on one adapter, whatever was drawn before.
     ///
@@ -110,7 +131,7 @@ impl Renderer {
         settings: &Settings,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Image, Error> {
-        self.expose(&Exposure::still(scene), settings, progress)
+        self.expose(Exposure::still(scene.clone()), settings, progress)
     }
 
     /// The same for a scene that moves while the shutter is open: each sample is drawn at its own time.
@@ -119,7 +140,7 @@ impl Renderer {
     /// As [`Self::render`]; [`Error::Input`] for times between which objects do not correspond.
     pub fn expose(
         &self,
-        exposure: &Exposure,
+        exposure: Exposure,
         settings: &Settings,
         progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Image, Error> {
@@ -130,29 +151,60 @@ impl Renderer {
         if settings.aovs.contains(&Aov::Vector) && exposure.neighbours.is_none() {
             return Err(Error::input("vector", "this pass needs the scenes of the frames before and after"));
         }
+        let settings = settings.clone();
+        let mut drawing = self.drawing.take(&mut || progress(Progress::Preparing))?;
+        let work = move |listener: &PictureListener| drawing.draw(&exposure, &settings, region, listener);
+        let refused =
+            |error: std::io::Error| Error::Device { adapter: self.adapter.name.clone(), reason: error.to_string() };
+        Waiting::begin(work).map_err(refused)?.outcome(progress)?
+    }
+}
+
+impl Drop for Renderer {
+    /// Waits for what a stopped picture has left: a driver that is unloaded while it works ends the process.
+    fn drop(&mut self) {
+        if let Ok(drawing) = self.drawing.take(&mut || ControlFlow::Continue(())) {
+            drop(drawing.keep());
+        }
+    }
+}
+
+impl Drawing {
+    /// Draws a region: left, top, width, height.
+    fn draw(
+        &mut self,
+        exposure: &Exposure,
+        settings: &Settings,
+        region: [u32; 4],
+        listener: &PictureListener,
+    ) -> Result<Image, Error> {
+        let scene = &exposure.steps[0];
         let planes = Planes::new(&settings.aovs);
-        let mut state = self.lock();
-        let State { tables, scene: kept_scene, sky: kept_sky, meshes: kept_meshes, mesh_pipelines, frame: kept_frame } =
-            &mut *state;
+        let Self { gpu, pipelines, mesh_pipelines, tables, .. } = self;
+        let (gpu, pipelines) = (&*gpu, &*pipelines);
         let transports = match settings.photons() {
             0 => Vec::new(),
             photons => {
-                let found =
-                    tables.transports(scene, photons, &mut |done, total| progress(Progress::Tables { done, total }));
-                let ControlFlow::Continue(transports) = found else { return Err(Error::Cancelled) };
+                let step = &mut |done, total| match listener.report(Progress::Tables { done, total }) {
+                    Ok(()) => ControlFlow::Continue(()),
+                    Err(_) => ControlFlow::Break(()),
+                };
+                let ControlFlow::Continue(transports) = tables.transports(scene, photons, step) else {
+                    return Err(Error::Cancelled);
+                };
                 transports
             }
         };
-        let (mut buffers, which) = SceneBuffers::update(&self.gpu, kept_scene.take(), scene, &transports, tables)?;
-        let sky = SkyBuffers::update(&self.gpu, kept_sky.take(), scene.environment.as_ref())?;
-        let meshes = MeshBuffers::update(&self.gpu, kept_meshes.take(), scene)?;
+        listener.check()?;
+        let (mut buffers, which) = SceneBuffers::update(gpu, self.scene.take(), scene, &transports, tables)?;
+        let sky = SkyBuffers::update(gpu, self.sky.take(), scene.environment.as_ref())?;
+        let meshes = MeshBuffers::update(gpu, self.meshes.take(), scene)?;
         if mesh_pipelines.is_none() && !meshes.is_empty() {
-            *mesh_pipelines = Some(MeshPipelines::new(&self.gpu)?);
+            *mesh_pipelines = Some(MeshPipelines::new(gpu)?);
         }
-        let motion = Motion::new(&self.gpu, exposure.steps, &which, settings.size, &buffers)?;
-        let neighbours = exposure.neighbours.filter(|_| planes.vector != NO_PLANE).map(|[before, after]| {
-            let neighbour =
-                |other, when| Neighbour::new(&self.gpu, scene, other, when, &which, settings.size, &buffers);
+        let motion = Motion::new(gpu, &exposure.steps, &which, settings.size, &buffers)?;
+        let neighbours = exposure.neighbours.as_ref().filter(|_| planes.vector != NO_PLANE).map(|[before, after]| {
+            let neighbour = |other, when| Neighbour::new(gpu, scene, other, when, &which, settings.size, &buffers);
             Ok::<_, Error>([neighbour(before, "frame before")?, neighbour(after, "frame after")?])
         });
         let neighbours = neighbours.transpose()?;
@@ -167,7 +219,7 @@ impl Renderer {
             (!motion.shapes.is_empty(), Pass::MoveKnots),
         ];
         let wanted: Vec<Pass> = wanted.into_iter().filter_map(|(is, pass)| is.then_some(pass)).collect();
-        self.pipelines.ensure(&self.gpu, &wanted)?;
+        pipelines.ensure(gpu, &wanted)?;
         let neighbours = neighbours.as_ref();
         let input = FrameInput {
             scene,
@@ -180,16 +232,18 @@ impl Renderer {
             sky: &sky,
             meshes: &meshes,
         };
-        let frame = FrameBuffers::fit(&self.gpu, kept_frame.take(), &input, &moment.draws, region)?;
-        let mut recorder = Recorder::new(&self.gpu, &self.pipelines, mesh_pipelines.as_ref(), &input, &frame, moment)?;
-        let image = recorder.picture(region, progress);
+        let frame = FrameBuffers::fit(gpu, self.frame.take(), &input, &moment.draws, region)?;
+        let mesh_pipelines = mesh_pipelines.as_ref();
+        let mut recorder = Recorder::new(gpu, pipelines, mesh_pipelines, listener, &input, &frame, moment)?;
+        // What is left of a picture that was stopped is done before another begins.
+        let image = recorder.picture(region).or_else(|error| gpu.finish().and(Err(error)));
         drop(recorder);
         buffers.displaced = !motion.shapes.is_empty();
         drop(motion);
-        *kept_scene = Some(buffers);
-        *kept_sky = Some(sky);
-        *kept_meshes = Some(meshes);
-        *kept_frame = Some(frame);
+        self.scene = Some(buffers);
+        self.sky = Some(sky);
+        self.meshes = Some(meshes);
+        self.frame = Some(frame);
         image
     }
 }

@@ -23,8 +23,8 @@ fn settings(samples: u32) -> Settings {
     Settings { samples, lod_pixels: 1.0, filter_width: 1.5, ..exact(SIZE) }
 }
 
-fn steps(steps: &[Scene]) -> Exposure<'_> {
-    Exposure { steps, neighbours: None }
+fn steps(steps: &[Scene]) -> Exposure {
+    Exposure { steps: steps.to_vec(), neighbours: None }
 }
 
 fn up(by: f64) -> DMat4 {
@@ -141,7 +141,7 @@ fn frames_do_not_depend_on_what_was_drawn_before() {
     let settings = settings(6);
     let (first, second) = (moving(0.0), moving(0.2));
     let alone = support::another_renderer()
-        .expose(&steps(&second), &settings, &mut |_| std::ops::ControlFlow::Continue(()))
+        .expose(steps(&second), &settings, &mut |_| std::ops::ControlFlow::Continue(()))
         .expect("a picture");
     expose(&steps(&first), &settings);
     assert_eq!(measure::difference(&expose(&steps(&second), &settings), &alone), None);
@@ -165,7 +165,7 @@ fn a_scene_that_stays_is_a_still() {
 fn scenes_that_do_not_correspond_are_refused() {
     let refused = |scenes: &[Scene], words: &str| {
         let result =
-            support::renderer().expose(&steps(scenes), &settings(1), &mut |_| std::ops::ControlFlow::Continue(()));
+            support::renderer().expose(steps(scenes), &settings(1), &mut |_| std::ops::ControlFlow::Continue(()));
         let error = result.expect_err(words).to_string();
         assert!(error.contains(words), "{error}");
     };

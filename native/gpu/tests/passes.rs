@@ -145,7 +145,7 @@ fn vectors_point_from_frame_to_frame() {
     type Move<'a> = &'a dyn Fn(DVec3) -> Scene;
     for (what, moved) in [("object", &by_object as Move), ("points", &by_points), ("camera", &by_camera)] {
         let [first, last] = [moved(before), moved(after)];
-        let exposure = Exposure { steps: std::slice::from_ref(&here), neighbours: Some([&first, &last]) };
+        let exposure = Exposure { steps: vec![here.clone()], neighbours: Some([first.clone(), last.clone()]) };
         let image = expose(&exposure, &settings(&[Aov::Vector]));
         let mut seen = 0;
         for (vector, there) in values(&image, Aov::Vector).zip(is_there(&image)) {
@@ -176,7 +176,7 @@ fn a_winding_yarn_that_turns_is_followed() {
         scene(vec![Object { world_from_object: turned, ..wave.clone() }], camera)
     };
     let [first, last] = [turn(-0.05), turn(0.08)];
-    let exposure = Exposure { steps: std::slice::from_ref(&here), neighbours: Some([&first, &last]) };
+    let exposure = Exposure { steps: vec![here.clone()], neighbours: Some([first.clone(), last.clone()]) };
     let image = expose(&exposure, &settings(&[Aov::Vector, Aov::Position]));
     let mut worst = 0.0_f64;
     for ((vector, position), there) in

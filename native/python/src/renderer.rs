@@ -74,11 +74,7 @@ impl Renderer {
         for step in later {
             steps.push(moved(&steps[0], step)?);
         }
-        let neighbours = match &neighbours[..] {
-            [before, after] => Some([before, after]),
-            _ => None,
-        };
-        let exposure = Exposure { steps: &steps, neighbours };
+        let exposure = Exposure { steps, neighbours: neighbours.try_into().ok() };
         if DRAWING.replace(true) {
             return Err(Failure::Input("render was called from a progress callback of another render".to_owned()));
         }
@@ -87,6 +83,7 @@ impl Renderer {
         let mut report = |progress| {
             let share = |done, total| f64::from(done) / f64::from(total);
             listener.report(match progress {
+                Progress::Preparing => 0.0,
                 Progress::Tables { done, total } => {
                     tables = TABLES_SHARE * share(done, total);
                     tables
@@ -94,7 +91,7 @@ impl Renderer {
                 Progress::Samples { done, total } => tables + (1.0 - tables) * share(done, total),
             })
         };
-        let result = detached(py, || self.0.expose(&exposure, &settings, &mut report));
+        let result = detached(py, || self.0.expose(exposure, &settings, &mut report));
         DRAWING.set(false);
         let image = listener.outcome(result)?;
         let statistics = statistics(py, &image.statistics)?;

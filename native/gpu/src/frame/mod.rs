@@ -7,7 +7,6 @@ mod tiles;
 
 pub(crate) use buffers::FrameBuffers;
 
-use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
@@ -28,6 +27,7 @@ use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
 use crate::shader::{Film, Pass, Resolve};
 use crate::timing::Timer;
 use crate::upload::SceneBuffers;
+use crate::waiting::Listener;
 use crate::{Environment, Error, Image, Occlusion, Progress, Scene, Settings, Statistics};
 
 /// Segments per block of the scan, threads of a visibility workgroup, workgroups in a row: `shaders/passes/work.wgsl`.
@@ -88,11 +88,15 @@ fn bits_for(count: u32) -> u32 {
     32 - count.saturating_sub(1).leading_zeros()
 }
 
+/// Who waits for a picture.
+pub(crate) type PictureListener = Listener<Result<Image, Error>>;
+
 /// Records and runs the passes of one picture.
 pub(crate) struct Recorder<'a> {
     gpu: &'a Gpu,
     pipelines: &'a Pipelines,
     mesh_pipelines: Option<&'a MeshPipelines>,
+    listener: &'a PictureListener,
     input: &'a FrameInput<'a>,
     frame: &'a FrameBuffers,
     uniform: layout::Frame,
@@ -113,6 +117,7 @@ impl<'a> Recorder<'a> {
         gpu: &'a Gpu,
         pipelines: &'a Pipelines,
         mesh_pipelines: Option<&'a MeshPipelines>,
+        listener: &'a PictureListener,
         input: &'a FrameInput<'a>,
         frame: &'a FrameBuffers,
         moment: Moment,
@@ -135,6 +140,7 @@ impl<'a> Recorder<'a> {
             gpu,
             pipelines,
             mesh_pipelines,
+            listener,
             input,
             frame,
             uniform: layout::Frame {
@@ -216,7 +222,7 @@ impl<'a> Recorder<'a> {
             ];
             self.record_with(&mut encoder, Pass::MoveKnots, &bound, |pass| pass.dispatch_workgroups(x, y, 1));
             self.timer.resolve(&mut encoder);
-            self.gpu.queue.submit([encoder.finish()]);
+            self.gpu.submit(encoder);
         }
         Ok(())
     }
@@ -261,11 +267,7 @@ impl<'a> Recorder<'a> {
     }
 
     /// Draws a region: left, top, width, height.
-    pub fn picture(
-        &mut self,
-        region: [u32; 4],
-        progress: &mut dyn FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<Image, Error> {
+    pub fn picture(&mut self, region: [u32; 4]) -> Result<Image, Error> {
         let [left, top, width, height] = region;
         let count = width as usize * height as usize;
         let mut image = Image {
@@ -295,9 +297,7 @@ impl<'a> Recorder<'a> {
                 self.sample(*tile, sample)?;
                 drawn = sample + 1;
                 let done = number as u32 * samples + sample + 1;
-                if progress(Progress::Samples { done, total }).is_break() {
-                    return Err(Error::Cancelled);
-                }
+                self.listener.report(Progress::Samples { done, total })?;
                 let is_late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
                 let film = || self.read(&[(&self.frame.film[0], 16 * u64::from(tile[2]) * u64::from(tile[3]))]);
                 if is_late || (drawn < samples && noise.wants(drawn) && noise.is_low(drawn, &film()?)) {
@@ -327,6 +327,7 @@ impl<'a> Recorder<'a> {
     /// One sample of a tile: jittered, and through a point of the lens. What can be seen through the whole lens would be culled by a wide
     /// margin, which blurred foreground makes larger than the picture: with a lens, each sample culls for itself.
     fn sample(&mut self, tile: [u32; 4], index: u32) -> Result<(), Error> {
+        self.listener.check()?;
         let FrameInput { scene, settings, motion, .. } = *self.input;
         let [left, top, width, height] = tile;
         let number = settings.first_sample.wrapping_add(index);
@@ -381,6 +382,7 @@ impl<'a> Recorder<'a> {
             self.write_uniform();
             self.shadows(&lights.views[first_view_to_draw as usize..], first_view_to_draw);
             self.static_lights = !motion.is_moving() && !scene.lights.iter().any(lights::is_soft);
+            self.listener.check()?;
         } else {
             self.write_uniform();
         }
@@ -441,7 +443,7 @@ impl<'a> Recorder<'a> {
             pipelines.record_shadows(self.gpu, &mut encoder, &bindings, targets, numbers, triangles);
         }
         self.timer.resolve(&mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.submit(encoder);
     }
 
     /// Cull and scan if asked for, visibility, resolve.
@@ -492,7 +494,7 @@ impl<'a> Recorder<'a> {
             });
         }
         self.timer.resolve(&mut encoder);
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.submit(encoder);
     }
 
     /// Where the points of the first sample are in the frames before and after.
@@ -509,7 +511,7 @@ impl<'a> Recorder<'a> {
             let (x, y) = fold(pixels.div_ceil(LANES));
             self.record_with(&mut encoder, Pass::Follow, &bound, |pass| pass.dispatch_workgroups(x, y, 1));
             self.timer.resolve(&mut encoder);
-            self.gpu.queue.submit([encoder.finish()]);
+            self.gpu.submit(encoder);
         }
         self.uniform = kept;
     }

@@ -23,7 +23,7 @@ impl Recorder<'_> {
             encoder.copy_buffer_to_buffer(buffer, 0, &self.frame.staging, at, *bytes);
             at += bytes;
         }
-        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.submit(encoder);
         let slice = self.frame.staging.slice(..at);
         slice.map_async(wgpu::MapMode::Read, |_| {});
         self.gpu.finish()?;

@@ -49,7 +49,7 @@ pub fn try_draw(scene: &Scene, settings: &Settings) -> Result<Image, Error> {
 
 /// Draws what moves.
 pub fn expose(exposure: &Exposure, settings: &Settings) -> Image {
-    let image = renderer().expose(exposure, settings, &mut |_| ControlFlow::Continue(())).expect("a picture");
+    let image = renderer().expose(exposure.clone(), settings, &mut |_| ControlFlow::Continue(())).expect("a picture");
     quiet::assert_quiet();
     image
 }
