@@ -109,5 +109,9 @@ def open_input(arguments: argparse.Namespace) -> tuple[Yarns, list[tuple[Path, C
 
 
 def numbered(output: Path, frame: float) -> Path:
-    """The file of a frame: its number in place of the #s."""
-    return output.with_name(re.sub("#+", lambda hashes: f"{frame:0{len(hashes[0])}g}", output.name))
+    """The file of a frame: its number in place of the #s, with as many digits before the point at least."""
+    whole, point, part = f"{abs(frame):.6f}".rstrip("0").rstrip(".").partition(".")
+    sign = "-" if frame < 0 else ""
+    return output.with_name(
+        re.sub("#+", lambda hashes: f"{sign}{whole.zfill(len(hashes[0]))}{point}{part}", output.name)
+    )
