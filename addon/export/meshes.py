@@ -4,10 +4,13 @@
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 
 from ..core.pixels import stable_id
 from ..core.surfaces import HOLDOUT, SHADED, SHADOW_CATCHER, Surface, by_material
+from .instances import instancer_of
+from .nodes import source_of
 
 TYPES = {"MESH", "FONT", "META", "SURFACE"}
 """Objects that are meshes when they are evaluated."""
@@ -52,7 +55,7 @@ class MeshReader:
         if kind is None or not instance.show_self:
             return []
         world_from_object = np.array(instance.matrix_world, dtype=np.float64)
-        instancer = (instance.parent.name_full, *instance.persistent_id) if instance.is_instance else ()
+        instancer = instancer_of(instance)
         materials = [slot.material for slot in obj.material_slots] or [None]
         placements = []
         for index, surface in self._parts(obj):
@@ -102,13 +105,23 @@ def base_color(material):
     if material is None:
         return _GREY
     color = material.diffuse_color
-    output = None if material.node_tree is None else material.node_tree.get_output_node("ALL")
-    if output is not None and output.inputs["Surface"].is_linked:
-        inputs = output.inputs["Surface"].links[0].from_node.inputs
-        socket = inputs.get("Base Color") or inputs.get("Color")
-        if socket is not None and not socket.is_linked and socket.type == "RGBA":
-            color = socket.default_value
+    surface = _surface(material)
+    if surface is not None:
+        socket = surface.inputs.get("Base Color") or surface.inputs.get("Color")
+        source = None if socket is None else source_of(socket)
+        if source is not None and source.type == "RGBA" and (not source.is_output or source.node.type == "RGB"):
+            color = source.default_value
     return tuple(min(max(channel, 0.0), 1.0) for channel in color[:3])
+
+
+def _surface(material):
+    """The node that makes a material's surface, or None."""
+    # Since 5.0 a material always has nodes, and asking is deprecated.
+    if material.node_tree is None or (bpy.app.version < (5, 0, 0) and not material.use_nodes):
+        return None
+    output = material.node_tree.get_output_node("ALL")
+    source = None if output is None else source_of(output.inputs["Surface"])
+    return source.node if source is not None and source.is_output else None
 
 
 def _read(mesh):

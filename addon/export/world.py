@@ -9,6 +9,7 @@ import numpy as np
 
 from ..core.errors import SceneError
 from ..core.pixels import linear_from_srgb
+from .nodes import source_of
 
 _LINEAR = {"Linear Rec.709", "Linear", "Non-Color", "scene_linear"}
 """Colour spaces whose 8-bit numbers are radiances as they are."""
@@ -73,28 +74,28 @@ def plan_of(world, note):
         plan.ambient = tuple(world.color)
         return plan
     output = world.node_tree.get_output_node("ALL")
-    if output is None or not output.inputs["Surface"].is_linked:
+    surface = None if output is None else source_of(output.inputs["Surface"])
+    if surface is None or not surface.is_output:
         return plan
-    if output.inputs["Volume"].is_linked:
+    if source_of(output.inputs["Volume"]).is_output:
         note(f"world '{world.name}': its volume is ignored")
-    node = output.inputs["Surface"].links[0].from_node
+    node = surface.node
     if node.type not in {"BACKGROUND", "EMISSION"}:
         note(f"world '{world.name}': its '{node.name}' node is ignored, Lisle reads a Background node")
         return plan
 
     def constant(name, kind):
-        socket = node.inputs[name]
-        if socket.is_linked:
-            source = socket.links[0]
-            if source.from_node.type == kind:
-                return source.from_socket.default_value
+        own = node.inputs[name]
+        source = source_of(own)
+        if source.type != own.type or (source.is_output and source.node.type != kind):
             note(f"world '{world.name}': what is linked to {name} is ignored, the socket's own value counts")
-        return socket.default_value
+            return own.default_value
+        return source.default_value
 
     strength = max(constant("Strength", "VALUE"), 0.0)
-    color = node.inputs["Color"]
-    if color.is_linked and color.links[0].from_node.type == "TEX_ENVIRONMENT":
-        _read_texture(world, color.links[0].from_node, plan, note)
+    color = source_of(node.inputs["Color"])
+    if color.is_output and color.node.type == "TEX_ENVIRONMENT":
+        _read_texture(world, color.node, plan, note)
         plan.strength = strength
     else:
         plan.ambient = tuple(max(channel * strength, 0.0) for channel in constant("Color", "RGB")[:3])
@@ -116,8 +117,9 @@ def _read_texture(world, node, plan, note):
     if node.projection != "EQUIRECTANGULAR":
         note(f"world '{world.name}': '{node.name}' counts as equirectangular")
     plan.image = image
-    if node.inputs["Vector"].is_linked:
-        plan.rotation = _rotation(world, node.inputs["Vector"].links[0].from_node, note)
+    vector = source_of(node.inputs["Vector"])
+    if vector.is_output:
+        plan.rotation = _rotation(world, vector.node, note)
 
 
 def _rotation(world, node, note):

@@ -101,6 +101,44 @@ def test_each_material_is_a_mesh_of_its_base_colour(lisle):
     assert len({mesh.object_id for mesh in meshes}) == 3
 
 
+def test_colours_come_past_reroutes_and_muted_nodes(lisle):
+    import bpy
+
+    made = material("Red", (0.9, 0.1, 0.2, 1))
+    tree = made.node_tree
+    output = tree.get_output_node("ALL")
+    principled = output.inputs["Surface"].links[0].from_node
+    (obj,) = [cube(materials=(made,))]
+
+    def seen():
+        obj.data.update()
+        return drawn(lisle)[0].base_color
+
+    def put(kind, source, target):
+        node = tree.nodes.new(kind)
+        tree.links.new(source, node.inputs[0])
+        tree.links.new(node.outputs[0], target)
+        return node
+
+    put("NodeReroute", principled.outputs[0], output.inputs["Surface"])
+    assert seen() == pytest.approx((0.9, 0.1, 0.2))
+    gamma = tree.nodes.new("ShaderNodeGamma")
+    gamma.inputs["Color"].default_value = (0.3, 0.4, 0.5, 1)
+    tree.links.new(gamma.outputs[0], principled.inputs["Base Color"])
+    assert seen() == pytest.approx((0.1, 0.2, 0.3)), "a texture has no one colour"
+    gamma.mute = True
+    assert seen() == pytest.approx((0.3, 0.4, 0.5))
+    color = tree.nodes.new("ShaderNodeRGB")
+    color.outputs[0].default_value = (0.6, 0.7, 0.8, 1)
+    put("NodeReroute", color.outputs[0], gamma.inputs["Color"])
+    assert seen() == pytest.approx((0.6, 0.7, 0.8))
+    principled.inputs["Base Color"].links[0].is_muted = True
+    assert seen() == pytest.approx((0.9, 0.1, 0.2))
+    if bpy.app.version < (5, 0, 0):
+        made.use_nodes = False
+        assert seen() == pytest.approx((0.1, 0.2, 0.3))
+
+
 def test_what_is_seen_of_a_mesh(lisle):
     objects = {kind: cube(kind) for kind in ("SHADED", "SHADOW_CATCHER", "HOLDOUT", "INVISIBLE")}
     for kind, obj in objects.items():

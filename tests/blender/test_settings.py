@@ -340,6 +340,27 @@ def test_world_without_nodes_and_with_unreadable_ones(lisle):
     assert tuple(render(lisle).ambient) == (0, 0, 0)
 
 
+def test_worlds_are_read_past_reroutes_and_muted_nodes(lisle):
+    scenes.curves("Yarn", scenes.line())
+    world, _, _ = sky_world(mapping="POINT")
+    tree = world.node_tree
+    for link in list(tree.links):
+        reroute = tree.nodes.new("NodeReroute")
+        tree.links.new(link.from_socket, reroute.inputs[0])
+        tree.links.new(reroute.outputs[0], link.to_socket)
+    scene, notes = drawn_world(lisle, world)
+    assert notes == [] and scene.environment.strength == 1.5
+    turn = scene.environment.world_from_environment
+    assert not np.allclose(turn, np.eye(3))
+    mapping = next(node for node in tree.nodes if node.type == "MAPPING")
+    mapping.mute = True
+    np.testing.assert_array_equal(drawn_world(lisle, world)[0].environment.world_from_environment, np.eye(3))
+    background = next(node for node in tree.nodes if node.type == "BACKGROUND")
+    background.mute = True
+    scene, _ = drawn_world(lisle, world)
+    assert scene.environment is None and scene.ambient == (0, 0, 0)
+
+
 def test_a_light_that_cannot_be_drawn_is_named(lisle, monkeypatch):
     def refuse(**_):
         raise lisle.InputError("Sun.strength: -1 is less than 0")
