@@ -7,12 +7,12 @@ without Blender.
 
 import bpy
 
-from . import engine, native, overlay, properties, tools, ui
+from . import engine, native, overlay, overrides, properties, tools, ui
 
 SUPPORTED = (4, 5, 0), (5, 3, 0)
 """First Blender version it is made for, and the first that it has not been tried with."""
 
-_MODULES = (properties, engine, overlay, tools, ui)
+_MODULES = (properties, overrides, engine, overlay, tools, ui)
 
 
 def register():

@@ -5,17 +5,32 @@ A yarn or fiber is a preset of the native module; 'Customize' copies its numbers
 count from then on. Every property has the name of the native field it stands for.
 """
 
-import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty
+import functools
 
-from . import native
+import bpy
+
+from . import native, overrides
 from .core.errors import NativeError
 from .presets import DEFAULT_FIBER, DEFAULT_YARN, FIBER_ITEMS, YARN_ITEMS, number_of, thumbnails
 from .presets.thumbnails import items_of
 
+_OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty = (
+    functools.partial(make, override=_OVERRIDABLE)
+    for make in (
+        bpy.props.BoolProperty,
+        bpy.props.EnumProperty,
+        bpy.props.FloatProperty,
+        bpy.props.FloatVectorProperty,
+        bpy.props.IntProperty,
+        bpy.props.PointerProperty,
+    )
+)
+
 
 def _tag(group, _context):
     """Tells views that what they show has changed: Blender does not do so for an extension's properties."""
+    overrides.keep(group.id_data)
     group.id_data.update_tag()
 
 

@@ -7,7 +7,7 @@ from bpy.props import BoolProperty, FloatProperty
 from mathutils import Matrix
 
 from .. import native
-from ..core.errors import GeometryError, LisleError
+from ..core.errors import GeometryError, LisleError, SceneError
 from ..export.follow import HEIGHT, VERTICES, WEIGHTS, follow
 from .add_knit import KnitPattern
 from .store_length import NAME as LENGTH
@@ -69,7 +69,9 @@ class LISLE_OT_knit_from_mesh(KnitPattern, NewMaterial, bpy.types.Operator):
         return {"FINISHED"}
 
     def _make(self, lisle, context):
-        mesh_object = context.active_object
+        mesh_object, collection = context.active_object, context.collection
+        if collection.library is not None or collection.override_library is not None:
+            raise SceneError(f"The collection '{collection.name}' is linked: make one of this file active")
         evaluated = mesh_object.evaluated_get(context.evaluated_depsgraph_get())
         location, rotation, _ = evaluated.matrix_world.decompose()
         placed = Matrix.LocRotScale(location, rotation, None)
@@ -84,13 +86,16 @@ class LISLE_OT_knit_from_mesh(KnitPattern, NewMaterial, bpy.types.Operator):
         _store(data, knit)
         self.add_material(data, name)
         obj = bpy.data.objects.new(name, data)
-        for collection in mesh_object.users_collection:
-            collection.objects.link(obj)
+        collection.objects.link(obj)
         obj.parent = mesh_object
         obj.matrix_parent_inverse = mesh_object.matrix_world.inverted_safe()
         obj.matrix_world = placed
         follow(obj, mesh_object, len(positions))
-        if self.hide_mesh:
+        if self.hide_mesh and mesh_object.library is not None:
+            self.report(
+                {"WARNING"}, f"'{mesh_object.name}' is linked and cannot be hidden here: make a library override of it"
+            )
+        elif self.hide_mesh:
             mesh_object.hide_render, mesh_object.display_type = True, "WIRE"
             mesh_object.lisle.mesh_kind = "INVISIBLE"
         unequal = [modifier.name for modifier in mesh_object.modifiers if _differs_in_pictures(modifier)]

@@ -61,8 +61,11 @@ class LISLE_OT_store_length(bpy.types.Operator):
 
 
 def _store(lisle, obj, depsgraph):
+    if obj.data.library is not None or obj.data.override_library is not None:
+        file = (obj.data.library or obj.data.override_library.reference.library).filepath
+        raise GeometryError(obj.name, f"its curves are linked from '{file}': store their lengths there")
     geometry = obj.evaluated_get(depsgraph).evaluated_geometry()
-    curves = None if geometry.curves is None else read_curves(geometry.curves)
+    curves = None if geometry.curves is None else read_curves(geometry.curves, obj.name)
     data = obj.data
     if curves is None or len(curves.points) != len(data.points):
         found = 0 if curves is None else len(curves.points)
