@@ -8,14 +8,15 @@ from mathutils import Matrix
 
 from .. import native
 from ..core.errors import LisleError, SceneError
+from ..engine.assembly import by_material
 from ..engine.rest import RestShapes
 from ..export.camera import native_camera
 from ..export.scene import collect
-from .yarn_objects import curves_data
+from .yarn_objects import curves_data, in_object_mode
 
 
 class LISLE_OT_fibers_to_curves(bpy.types.Operator):
-    """Make every fiber of the selected yarns, at this frame, a curve with a radius; Cycles renders them as hair"""
+    """Make the fibers of the selected yarns curves with a radius, all or those that the camera tells apart, for Cycles"""
 
     bl_idname = "lisle.fibers_to_curves"
     bl_label = "Fibers to Curves"
@@ -47,7 +48,7 @@ class LISLE_OT_fibers_to_curves(bpy.types.Operator):
         if not context.selected_objects:
             cls.poll_message_set("Select yarn: Curves objects, or what geometry nodes make curves of")
             return False
-        return True
+        return in_object_mode(cls, context)
 
     def draw(self, _context):
         layout = self.layout
@@ -61,7 +62,10 @@ class LISLE_OT_fibers_to_curves(bpy.types.Operator):
     def execute(self, context):
         try:
             lisle = native.module()
-            made = self._make(lisle, context)
+            try:
+                made = self._make(lisle, context)
+            except lisle.Error as error:
+                raise LisleError(str(error)) from error
         except LisleError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -86,11 +90,11 @@ class LISLE_OT_fibers_to_curves(bpy.types.Operator):
         rest_shapes = RestShapes()
         at_rest = rest_shapes.find(lisle, _Clock(scene), depsgraph, content)
         prepared, points = [], 0
-        try:
-            for placement in content.placements:
-                geometry = content.geometries[placement.key]
-                yarns = rest_shapes.yarns(lisle, geometry.key, geometry.curves, at_rest[geometry.key])
-                yarn, fiber = geometry.materials[0]
+        for placement in content.placements:
+            geometry = content.geometries[placement.key]
+            for yarns, (yarn, fiber), _ in by_material(
+                lisle, geometry, at_rest[geometry.key], rest_shapes, lambda text: self.report({"INFO"}, text)
+            ):
                 found = lisle.fibers(
                     yarns,
                     yarn,
@@ -102,8 +106,6 @@ class LISLE_OT_fibers_to_curves(bpy.types.Operator):
                 if points > 1_000_000 * self.most_points:
                     raise SceneError(f"More than {self.most_points} million points: raise Most Points, or use a camera")
                 prepared.append((placement, found, fiber))
-        except lisle.Error as error:
-            raise LisleError(str(error)) from error
         collection = bpy.data.collections.new("Fibers")
         scene.collection.children.link(collection)
         return [_add(collection, *each) for each in prepared]

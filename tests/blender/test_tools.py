@@ -85,6 +85,7 @@ def test_objects_are_added_in_object_mode_alone(lisle, tmp_path):
         (bpy.ops.lisle.add_woven_swatch, {}),
         (bpy.ops.lisle.import_bcc, {"filepath": str(tmp_path / "a.bcc")}),
         (bpy.ops.lisle.knit_from_mesh, {}),
+        (bpy.ops.lisle.fibers_to_curves, {}),
     ):
         with pytest.raises(RuntimeError, match="poll"):
             add(**arguments)
@@ -257,6 +258,42 @@ def test_a_camera_asks_for_fewer_fibers(lisle):
     select(obj)
     bpy.ops.lisle.fibers_to_curves(for_camera=False)
     assert few < 0.2 * len(bpy.context.selected_objects[0].data.points)
+
+
+def test_fibers_of_warp_and_weft_have_their_own_materials(lisle):
+    import bpy
+
+    bpy.ops.lisle.add_woven_swatch(
+        warp=3, weft=2, yarn="silk-1", fiber="cotton-1", use_weft_fiber=True, weft_fiber="rayon-3"
+    )
+    bpy.context.active_object.data.materials[1].lisle.yarn.preset = "rayon-1"
+    bpy.ops.lisle.fibers_to_curves(for_camera=False)
+    made = sorted(bpy.context.selected_objects, key=lambda obj: obj.name)
+    colors, counts = [], []
+    for obj in made:
+        (material,) = obj.data.materials
+        hair = material.node_tree.get_output_node("ALL").inputs["Surface"].links[0].from_node
+        colors.append(tuple(hair.inputs["Color"].default_value)[:3])
+        counts.append(len(obj.data.curves))
+    expected = [lisle.Material.preset(name).color_tt for name in ("cotton-1", "rayon-3")]
+    np.testing.assert_allclose(colors, expected, rtol=1e-6)
+    yarns = lisle.woven_swatch("plain", 3, 2, 0.001, 1.01)
+    for count, number, name in zip(counts, (3, 2), ("silk-1", "rayon-1"), strict=True):
+        yarn = lisle.Yarn.preset(name)
+        assert count >= number * yarn.plies * yarn.fibers_per_ply
+    assert len(yarns) == 5
+
+
+def test_fibers_that_cannot_be_made_are_said(lisle):
+    import bpy
+
+    obj = select(scenes.curves("Yarn", scenes.line()))
+    obj.data.materials.append(bpy.data.materials.new("Wool"))
+    obj.data.materials[0].lisle.yarn.customize = True
+    obj.data.materials[0].lisle.yarn.ply_twist = 0
+    with pytest.raises(RuntimeError, match="object 'Yarn': material 'Wool': ") as raised:
+        bpy.ops.lisle.fibers_to_curves()
+    assert "Traceback" not in str(raised.value)
 
 
 def test_fibers_of_nothing_and_too_many_are_refused(lisle):
