@@ -3,11 +3,11 @@
 
 import bpy
 
-from .panel import LislePanel
+from .panel import YarnPanel
 from .presets import LISLE_PT_fiber_presets, LISLE_PT_yarn_presets
 
 
-class _MaterialPanel(LislePanel):
+class _MaterialPanel(YarnPanel):
     bl_context = "material"
 
     @classmethod

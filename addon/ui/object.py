@@ -4,10 +4,10 @@
 import bpy
 
 from ..export.meshes import TYPES as MESH_TYPES
-from .panel import LislePanel
+from .panel import LislePanel, YarnPanel
 
 
-class LISLE_OBJECT_PT_yarn(LislePanel, bpy.types.Panel):
+class LISLE_OBJECT_PT_yarn(YarnPanel, bpy.types.Panel):
     bl_label = "Yarn"
     bl_context = "object"
 

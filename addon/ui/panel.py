@@ -3,7 +3,7 @@
 
 
 class LislePanel:
-    """A panel of the properties editor that shows only with the Lisle engine."""
+    """A panel of the properties editor that shows with the Lisle engine."""
 
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
@@ -18,6 +18,14 @@ class LislePanel:
         layout.use_property_split = True
         layout.use_property_decorate = False
         return layout
+
+
+class YarnPanel(LislePanel):
+    """One that shows wherever yarn does: with the Lisle engine, or in the overlay over another one's picture."""
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) or context.scene.lisle.show_overlay
 
 
 def wrapped_label(layout, text, icon="NONE", width=60):

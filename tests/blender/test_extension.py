@@ -150,6 +150,9 @@ def test_every_panel_draws(addon):
             assert draw(panel, context).texts, panel.__name__
         context.engine = "CYCLES"
         assert not panel.poll(context)
+        context.scene.lisle.show_overlay = True
+        assert panel.poll(context) == (panel.__name__.startswith(("LISLE_MATERIAL", "LISLE_OBJECT_PT_yarn")))
+        context.scene.lisle.show_overlay = False
         context.engine = "LISLE"
     assert shown == {panel.__name__ for panel in addon.ui._PANELS} - {"LISLE_RENDER_PT_problem"}
 
