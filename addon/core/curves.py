@@ -83,6 +83,21 @@ class CurveArrays:
             material_index=pick(self.material_index, curve_mask),
         )
 
+    def as_drawn(self):
+        """As Blender draws them: NURBS with fewer points than their order as polylines, rings of two points open."""
+        counts, basis = np.diff(self.offsets.astype(np.int64)), self.basis
+        if self.nurbs_order is not None:
+            basis = np.where((basis == NURBS) & (counts < self.nurbs_order), np.uint8(POLY), basis)
+        return replace(self, basis=basis, closed=self.closed & ((counts > 2) | (basis == BEZIER)))
+
+    def has_extent(self):
+        """(c,) bool: whether two points of a curve differ; numbers that are none differ from all."""
+        first, last = self.offsets[:-1].astype(np.int64), self.offsets[1:].astype(np.int64) - 1
+        several = last > first
+        differing = np.cumsum(np.append(False, (self.points[1:] != self.points[:-1]).any(axis=1)))
+        several[several] = differing[last[several]] > differing[first[several]]
+        return several
+
     def difference_from_rest(self, rest):
         """Why these curves cannot be the moved curves `rest`, in words, or None if they can."""
         if self.curve_count != rest.curve_count:

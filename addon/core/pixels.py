@@ -35,6 +35,13 @@ def linear_from_srgb(values):
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4).astype(np.float32)
 
 
+def free_id(identity, taken):
+    """The first id from `identity` on that is not in `taken`: for two of equal hash, which come in a stable order."""
+    while identity in taken:
+        identity += 1
+    return identity
+
+
 def stable_id(*identity):
     """A number from 1 to 2²⁴ − 1 that is the same for the same identity in every process.
 

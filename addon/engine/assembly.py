@@ -3,18 +3,22 @@
 
 import numpy as np
 
+from ..core.pixels import free_id
 
-def add_objects(lisle, scene, content, at_rest, rest_shapes):
+
+def add_objects(lisle, scene, content, at_rest, rest_shapes, note):
     """Adds the yarns of `content` (export.scene.Content), measured on `at_rest`, to a lisle.Scene.
+    Tells `note` (a callable) what is left out.
 
     Returns Blender's object index by object id.
     """
-    parts = {key: _parts(lisle, geometry, at_rest[key], rest_shapes) for key, geometry in content.geometries.items()}
+    parts = {
+        key: by_material(lisle, geometry, at_rest[key], rest_shapes, note)
+        for key, geometry in content.geometries.items()
+    }
     pass_index_of = {}
     for placement in content.placements:
-        identity = placement.identity
-        while identity in pass_index_of:  # two of equal hash; their order is stable
-            identity += 1
+        identity = free_id(placement.identity, pass_index_of)
         pass_index_of[identity] = placement.pass_index
         for yarns, (yarn, material), (material_name, material_index) in parts[placement.key]:
             scene.add(
@@ -32,9 +36,23 @@ def add_objects(lisle, scene, content, at_rest, rest_shapes):
     return pass_index_of
 
 
-def _parts(lisle, geometry, at_rest, rest_shapes):
-    """[(lisle.Yarns, (lisle.Yarn, lisle.Material), label)]: the curves of one geometry, by material."""
+def by_material(lisle, geometry, at_rest, rest_shapes, note):
+    """[(lisle.Yarns, (lisle.Yarn, lisle.Material), label)]: the curves of one geometry, by material.
+
+    Curves without length at rest are left out, of which `note` is told.
+    """
     curves, materials, labels = geometry.curves, geometry.materials, geometry.labels
+    there = at_rest.has_extent()
+    if not there.all():
+        first, count = int(np.argmin(there)), int((~there).sum())
+        note(
+            f"object '{geometry.object_name}': {count} of its {len(there)} curves are not drawn, curve {first} first: "
+            "their points at rest are one place"
+        )
+        if not there.any():
+            return []
+        is_rest, curves = curves is at_rest, curves.select(there)
+        at_rest = curves if is_rest else at_rest.select(there)
     if curves.material_index is None or len(materials) == 1:
         return [(rest_shapes.yarns(lisle, geometry.key, curves, at_rest), materials[0], labels[0])]
     # Blender draws an index beyond the last slot with the last one.

@@ -139,7 +139,7 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
         scene = lisle.Scene(
             camera=seen_from, lights=content.lights, ambient=world.ambient, environment=world.environment
         )
-        return scene, add_objects(lisle, scene, moved, at_rest, REST_SHAPES)
+        return scene, add_objects(lisle, scene, moved, at_rest, REST_SHAPES, note)
 
     scene, pass_index_of = scene_of(content, native_camera(lisle, camera, depsgraph, frame_size))
     if depsgraph.scene.lisle.method != "REFERENCE":

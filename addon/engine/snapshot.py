@@ -32,6 +32,7 @@ class Snapshot:
         scene = depsgraph.scene
         self._lisle = lisle
         self.notes = []
+        """What is left out, in sentences; more may come with the first picture."""
         self.content = collect(lisle, depsgraph, self.notes.append, shows=shows)
         self._at_rest = REST_SHAPES.known(scene, depsgraph.view_layer, self.content)
         if depsgraph.id_type_updated("IMAGE"):
@@ -104,7 +105,7 @@ class Snapshot:
         """The lisle.Scene; made at the first call, in the painter's thread."""
         if self._native is None:
             scene = self._lisle.Scene(camera=camera)
-            taken = add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES)
+            taken = add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES, self.notes.append)
             self._meshes, _ = SURFACES.meshes(self._lisle, self.content.meshes, taken)
             self._native = scene
         self._native.camera = camera

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Native meshes, kept from picture to picture so that the device holds on to what has not changed."""
 
+from ..core.pixels import free_id
+
 
 class Surfaces:
     """Those of the scene that was drawn last."""
@@ -13,7 +15,7 @@ class Surfaces:
 
     def meshes(self, lisle, placements, taken):
         """[lisle.Mesh] of MeshPlacements, and Blender's object index by object id, for ids that are not in `taken`."""
-        kept, meshes, pass_index_of = {}, [], {}
+        kept, meshes, pass_index_of, taken = {}, [], {}, set(taken)
         for placement in placements:
             surface = placement.surface
             key = (surface.digest, placement.color, placement.kind)
@@ -28,9 +30,8 @@ class Surfaces:
                     name=placement.name,
                 )
             kept[key] = mesh
-            identity = placement.identity
-            while identity in taken or identity in pass_index_of:
-                identity += 1
+            identity = free_id(placement.identity, taken)
+            taken.add(identity)
             pass_index_of[identity] = placement.pass_index
             meshes.append(mesh.at(placement.world_from_object, object_id=identity, name=placement.name))
         self._kept = kept

@@ -48,7 +48,7 @@ class Viewport:
         picture, status = self._picture(view)
         if picture is not None:
             self._screen.draw(picture, view)
-            return status
+            return " · ".join((status, *dict.fromkeys(self._snapshot.notes)))
         if self._snapshot.background is not None:
             self._screen.fill(self._snapshot.background, view)
         self._screen.draw_lines(self._snapshot, view)

@@ -8,19 +8,27 @@ curves without bevel. A legacy curve with bevel is only a mesh: then its splines
 import numpy as np
 
 from ..core.curves import BEZIER, CATMULL_ROM, NURBS, CurveArrays, bezier_polygons, interpolate
+from ..core.errors import GeometryError
 
 DEFAULT_RADIUS_M = 0.01
 """Radius of curves that carry none; Blender draws those with the same radius."""
 
-_INTEGER_BUFFERS = {"INT": np.int32, "INT8": np.int32, "BOOLEAN": bool}
+_BUFFERS = {"FLOAT": np.float32, "INT": np.int32, "INT8": np.int32, "BOOLEAN": bool}
+"""By the type of a scalar attribute."""
 
 
-def read_attribute(curves, name, domain, count):
-    """Values of a scalar attribute, or None where it does not exist on that domain."""
+def read_attribute(curves, name, domain, count, object_name):
+    """Values of a scalar attribute, or None where it does not exist on that domain.
+
+    Raises GeometryError where it is of another type.
+    """
     attribute = curves.attributes.get(name)
     if attribute is None or attribute.domain != domain or len(attribute.data) != count:
         return None
-    values = np.empty(count, _INTEGER_BUFFERS.get(attribute.data_type, np.float32))
+    if attribute.data_type not in _BUFFERS:
+        reason = f"its attribute '{name}' is of type {attribute.data_type}: store it as FLOAT, one number for each"
+        raise GeometryError(object_name, f"{reason} {domain.lower()}")
+    values = np.empty(count, _BUFFERS[attribute.data_type])
     attribute.data.foreach_get("value", values)
     return values
 
@@ -34,8 +42,11 @@ def _read_vectors(curves, name, fallback):
     return values.reshape(-1, 3)
 
 
-def read_curves(curves):
-    """A `bpy.types.Curves` as CurveArrays, in its own space; None if it has no point."""
+def read_curves(curves, object_name):
+    """A `bpy.types.Curves` of an object as CurveArrays, in its own space; None if it has no point.
+
+    Raises GeometryError where an attribute is of a type that Lisle cannot read.
+    """
     point_count, curve_count = len(curves.points), len(curves.curves)
     if point_count == 0:
         return None
@@ -46,19 +57,25 @@ def read_curves(curves):
     curves.curve_offset_data.foreach_get("value", offsets)
     offsets = offsets.astype(np.uint32)
 
+    def of_curves(name):
+        return read_attribute(curves, name, "CURVE", curve_count, object_name)
+
+    def of_points(name):
+        return read_attribute(curves, name, "POINT", point_count, object_name)
+
     def per_curve(name, default, dtype):
-        values = read_attribute(curves, name, "CURVE", curve_count)
+        values = of_curves(name)
         return np.full(curve_count, default, dtype) if values is None else values.astype(dtype)
 
     closed = per_curve("cyclic", False, bool)
     basis = per_curve("curve_type", CATMULL_ROM, np.uint8)
-    radii = read_attribute(curves, "radius", "POINT", point_count)
+    radii = of_points("radius")
     if radii is None:
         radii = np.full(point_count, DEFAULT_RADIUS_M, np.float32)
-    lengths = read_attribute(curves, "length_coordinate", "POINT", point_count)
+    lengths = of_points("length_coordinate")
     weights = order = knots_mode = None
     if (basis == NURBS).any():
-        weights = read_attribute(curves, "nurbs_weight", "POINT", point_count)
+        weights = of_points("nurbs_weight")
         if weights is None:
             weights = np.ones(point_count, np.float32)
         # Blender's default for both attributes.
@@ -78,5 +95,5 @@ def read_curves(curves):
         nurbs_weights=weights,
         nurbs_knots_mode=knots_mode,
         length_coordinates=lengths,
-        material_index=read_attribute(curves, "material_index", "CURVE", curve_count),
-    )
+        material_index=of_curves("material_index"),
+    ).as_drawn()

@@ -9,6 +9,7 @@ sequence.
 import bpy
 
 from ..core.errors import GeometryError
+from .meshes import evaluated_mesh
 
 VERTICES = ("lisle_vertex_1", "lisle_vertex_2", "lisle_vertex_3")
 """Point attributes: numbers of the vertices."""
@@ -36,17 +37,24 @@ def check(obj, depsgraph):
     for modifier in obj.modifiers:
         if modifier.type != "NODES" or modifier.node_group is None or _MARK not in modifier.node_group:
             continue
+        if not (modifier.show_render if depsgraph.mode == "RENDER" else modifier.show_viewport):
+            continue
         mesh_object, count = _get(modifier, _OBJECT), _get(modifier, _COUNT)
         if mesh_object is None:
             raise GeometryError(obj.name, f"the mesh that its modifier '{modifier.name}' follows is gone")
-        mesh = mesh_object.evaluated_get(depsgraph).data
-        found = len(mesh.vertices) if isinstance(mesh, bpy.types.Mesh) else 0
+        evaluated = mesh_object.evaluated_get(depsgraph)
+        with evaluated_mesh(evaluated) as mesh:
+            found = 0 if mesh is None else len(mesh.vertices)
         if found != count:
+            advice = (
+                "leave Edit Mode, in which its modifiers may be off"
+                if evaluated.mode == "EDIT"
+                else "its modifiers need the same levels in the viewport and in pictures; "
+                "if the mesh itself was changed, use Knit from Mesh again"
+            )
             raise GeometryError(
                 obj.name,
-                f"the mesh '{mesh_object.name}' has {found} vertices, {count} when it was knitted on: "
-                "its modifiers need the same levels in the viewport and in pictures; "
-                "if the mesh itself was changed, use Knit from Mesh again",
+                f"the mesh '{mesh_object.name}' has {found} vertices, {count} when it was knitted on: {advice}",
             )
 
 

@@ -26,7 +26,7 @@ def read_legacy(obj, geometry, depsgraph):
     Raises GeometryError where a modifier moves the tube mesh, not the curve in it.
     """
     if geometry.curves is not None:
-        arrays = read_curves(geometry.curves)
+        arrays = read_curves(geometry.curves, obj.name)
         if arrays is None:
             return None
         arrays = _with_spline_materials(arrays, obj.data)
@@ -151,7 +151,7 @@ def read_splines(curve):
         nurbs_weights=weights if nurbs else None,
         nurbs_knots_mode=np.array(knots, np.uint8) if nurbs else None,
         material_index=np.array(material, np.int32) if len(curve.materials) > 1 else None,
-    )
+    ).as_drawn()
 
 
 def _read_spline(spline):

@@ -14,6 +14,7 @@ from ..core.curves import CurveArrays
 from ..core.pixels import stable_id
 from . import follow
 from .curves import read_curves
+from .instances import instancer_of
 from .legacy import read_legacy
 from .lights import native_light
 from .materials import geometry_materials, yarn_and_material
@@ -122,7 +123,7 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
             for part, _ in parts_of[name]:
                 content.geometries[part.key] = part
         world_from_object = np.array(instance.matrix_world, dtype=np.float64)
-        instancer = (instance.parent.name_full, *instance.persistent_id) if instance.is_instance else ()
+        instancer = instancer_of(instance)
         for part, transforms in parts_of[name]:
             if not instance.show_self and len(part.key) == 1:
                 continue
@@ -181,9 +182,9 @@ def _read_parts(lisle, obj, geometry, depsgraph):
     if obj.type == "CURVE":
         add((), read_legacy(obj, geometry, depsgraph), geometry_materials(obj, geometry.curves or obj.data), own)
     elif geometry.curves is not None:
-        add((), read_curves(geometry.curves), geometry_materials(obj, geometry.curves), own)
+        add((), read_curves(geometry.curves, obj.name), geometry_materials(obj, geometry.curves), own)
     for path, curves, transforms in _instanced_curves(geometry, (), own):
-        add(path, read_curves(curves), list(curves.materials), transforms)
+        add(path, read_curves(curves, obj.name), list(curves.materials), transforms)
     return parts
 
 

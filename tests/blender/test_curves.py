@@ -345,3 +345,54 @@ def test_usd_curves(entries, data):
         assert np.abs(later.yarns.points - first.yarns.points).max() > 0.01
         np.testing.assert_array_equal(later.yarns.rest_points, first.yarns.points)
         bpy.data.objects.remove(obj)
+
+
+@pytest.mark.parametrize("name", ["length_coordinate", "radius"])
+def test_an_attribute_of_another_type_is_named(lisle, name):
+    import bpy
+
+    obj = scenes.curves("Yarn", scenes.line(), radius=None)
+    obj.data.attributes.new(name, "FLOAT_VECTOR", "POINT")
+    found = rf"object 'Yarn': its attribute '{name}' is of type FLOAT_VECTOR: store it as FLOAT"
+    with pytest.raises(RuntimeError, match=found):
+        bpy.ops.render.render()
+
+
+def notes_of_drawing(addon, lisle):
+    """[(entries, notes)] of two frames of an animation."""
+    import bpy
+
+    told, say = [], addon.engine.job.not_said_before
+    addon.engine.engine.job.not_said_before = lambda sentences: told.append(say(sentences)) or told[-1]
+    bpy.context.scene.frame_end = 2
+    bpy.ops.render.render(animation=True)
+    return [(scene.entries, notes) for (scene, _), notes in zip(lisle.scenes[-2:], told, strict=True)]
+
+
+def test_curves_without_length_are_left_out_and_said_once(addon, lisle):
+    point, dot = scenes.line(1), np.zeros((4, 3))
+    scenes.curves("Yarn", point, scenes.line(5), dot, scenes.line(3))
+    scenes.curves("Dust", point, dot)
+    (first, notes), (second, later) = notes_of_drawing(addon, lisle)
+    for entries in (first, second):
+        assert [(entry.name, np.diff(entry.yarns.offsets).tolist()) for entry in entries] == [("Yarn", [5, 3])]
+    assert later == [] and len(notes) == 2
+    assert any("object 'Yarn': 2 of its 4 curves are not drawn, curve 0 first" in note for note in notes)
+    assert any("object 'Dust': 2 of its 2 curves" in note for note in notes)
+
+
+def test_what_is_no_number_is_never_left_out(lisle):
+    import bpy
+
+    scenes.curves("Yarn", scenes.line(5), np.full((4, 3), np.nan))
+    with pytest.raises(RuntimeError, match="point 5 is not finite"):
+        bpy.ops.render.render()
+
+
+def test_short_nurbs_and_rings_of_two_are_as_blender_draws_them(entries):
+    obj = scenes.curves("Yarn", scenes.line(3), scenes.line(2), scenes.line(4))
+    obj.data.set_types(type="NURBS", indices=[0, 2])
+    obj.data.attributes.new("cyclic", "BOOLEAN", "CURVE").data.foreach_set("value", [False, True, True])
+    (entry,) = entries()
+    assert entry.yarns.basis.tolist() == [POLY, CATMULL_ROM, NURBS]
+    assert entry.yarns.closed.tolist() == [False, False, True]

@@ -241,3 +241,47 @@ def test_a_mesh_that_was_changed_or_removed_stops_the_render(lisle):
     bpy.data.objects.remove(mesh_object)
     with pytest.raises(RuntimeError, match="is gone"):
         bpy.ops.render.render()
+
+
+def test_a_modifier_that_is_off_is_not_checked(lisle):
+    import bpy
+    from lisle_blender.export.scene import collect
+
+    mesh_object = grid(size=6)
+    obj = knit(yarn_radius=0.2)
+    mesh_object.modifiers.new("Subdivision", "SUBSURF").render_levels = 1
+    modifier = obj.modifiers["Follow Mesh"]
+    bpy.context.scene.lisle.samples = 1
+
+    def view():
+        collect(lisle, bpy.context.evaluated_depsgraph_get(), print)
+
+    modifier.show_render = False
+    bpy.ops.render.render()
+    with pytest.raises(Exception, match="vertices, 81 when"):
+        view()
+    modifier.show_render, modifier.show_viewport = True, False
+    view()
+    with pytest.raises(RuntimeError, match="vertices, 81 when"):
+        bpy.ops.render.render()
+
+
+@pytest.mark.parametrize("in_edit_mode", [True, False])
+def test_the_mesh_may_be_in_edit_mode(lisle, in_edit_mode):
+    import bpy
+    from lisle_blender.core.errors import GeometryError
+    from lisle_blender.export.scene import collect
+
+    mesh_object = grid(size=6)
+    modifier = mesh_object.modifiers.new("Subdivision", "SUBSURF")
+    modifier.levels = modifier.render_levels = 1
+    modifier.show_in_editmode = in_edit_mode
+    knit(yarn_radius=0.2)
+    bpy.context.view_layer.objects.active = mesh_object
+    bpy.ops.object.mode_set(mode="EDIT")
+    if in_edit_mode:
+        assert collect(lisle, bpy.context.evaluated_depsgraph_get(), print).placements
+    else:
+        with pytest.raises(GeometryError, match="leave Edit Mode") as raised:
+            collect(lisle, bpy.context.evaluated_depsgraph_get(), print)
+        assert "the same levels" not in str(raised.value)
