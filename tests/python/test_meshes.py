@@ -43,6 +43,12 @@ def test_a_mesh_hides_and_is_numbered(renderer, yarns):
     np.testing.assert_allclose(lit, (0.64, 0.64, 0.64, 1), rtol=1e-3)
 
 
+def test_meshes_are_in_the_manifest(renderer, yarns):
+    image = draw(renderer, yarns, [square(z=0.5, name="Table")], passes=["crypto_object"])
+    number = np.array([image.manifests["crypto_object"]["Table"]], np.uint32).view(np.float32)[0]
+    assert image["crypto_object"][24, 32, 0] == number and image["crypto_object"][24, 32, 1] == 1
+
+
 def test_kinds_and_colours(renderer, yarns):
     shaded = draw(renderer, yarns, [square(z=-0.5, base_color=(0.5, 0.25, 0.0))])
     np.testing.assert_allclose(shaded["combined"][30, 32], (0.4, 0.2, 0, 1), rtol=1e-3)

@@ -166,7 +166,7 @@ class Image(Mapping[str, npt.NDArray[Any]]):
 def manifests(scene: Scene, passes: Iterable[str]) -> dict[str, dict[str, int]]:
     """Names and hashes of the Cryptomatte passes among those."""
     names = {
-        "crypto_object": [entry.name for entry in scene.objects],
+        "crypto_object": [entry.name for entry in scene.objects] + [mesh.name for mesh in scene.meshes],
         "crypto_material": [entry.material_name for entry in scene.objects],
     }
     return {

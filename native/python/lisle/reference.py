@@ -84,10 +84,10 @@ def fibers(
 class Reference:
     """A path tracer through explicit fibers: slow, and right.
 
-    It draws the same scenes as `Renderer` from the same arguments.
+    It draws the same yarns as `Renderer` from the same arguments, but no meshes.
 
-    It runs on all cores and needs no graphics adapter. Memory: 20 to 40 bytes for each segment of a fiber, and up to
-    five times as much while it starts. A knitted glove, 140 000 yarn radii of yarn with 225 fibers, has 100 million.
+    It runs on all cores and needs no graphics adapter. Memory: 40 bytes for each segment of a fiber, up to 200
+    while it starts. A knitted glove, 140 000 yarn radii of yarn with 225 fibers, has 100 million.
     """
 
     def render(
@@ -125,11 +125,11 @@ class Reference:
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
             environment: light from all sides, which is added to `ambient`.
-            meshes: surfaces that hide yarn, throw shadows on it and take its own.
+            meshes: none, because the path tracer draws yarns alone.
             samples: independent paths per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
-            bounces: most times that light is scattered, 1 for what the renderer draws; any number unless given.
+            bounces: most times that light is scattered, 1 as the renderer without photons; any number unless given.
             region: part of the frame to draw, x0, y0, x1, y1 in pixels from the bottom left, x1 and y1 exclusive.
             transparent: leaves the background transparent; otherwise it is that of ambient and environment.
             filter_width: of the pixel filter, pixels; 0 for a point sample at the centre of each pixel.

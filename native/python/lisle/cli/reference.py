@@ -27,7 +27,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
         "--bounces",
         type=at_least_one,
         metavar="N",
-        help="most scatterings; 1 as in `lisle render` (default: any)",
+        help="most scatterings; 1 is `lisle render --transport-photons 0` (default: any)",
     )
     add("--seed", type=whole, default=0, metavar="N", help="of all random numbers (default 0)")
     add("--checkpoint", type=Path, metavar="FILE", help="keeps the work here, and goes on with it if it is there")
