@@ -61,12 +61,61 @@ def test_the_options_of_render_count(cloth, tmp_path):
     pictures = set()
     for number, options in enumerate(
         [[], ["--yarn", "rayon-1"], ["--material", "silk"], ["--shading", "simple"], ["--yarn-radius", "0.0005"],
-         ["--direction=-1,0,0"], ["--samples", "2"]]
+         ["--direction=-1,0,0"], ["--samples", "2"], ["--samples", "2", "--filter", "box"],
+         ["--samples", "2", "--filter-width", "4"],
+         ["--transport-photons", "0"]]
     ):  # fmt: skip
         output = tmp_path / f"{number}.png"
         assert run("render", cloth, "-o", output, *SMALL, *options).returncode == 0
         pictures.add(output.read_bytes())
-    assert len(pictures) == 7
+    assert len(pictures) == 10
+
+
+def test_a_picture_on_one_thread_is_the_same(cloth, tmp_path):
+    for number, options in enumerate([[], ["-t", "1"], ["--threads", "2"]]):
+        result = run("render", cloth, "-o", tmp_path / f"{number}.png", *SMALL, *options)
+        assert (result.returncode, result.stderr) == (0, "")
+    assert len({(tmp_path / f"{number}.png").read_bytes() for number in range(3)}) == 1
+
+
+def test_a_smooth_picture_stops_early(cloth, tmp_path):
+    for name, options in (("a", ["--samples", "4096", "--noise-threshold", "1"]), ("b", ["--samples", "16"])):
+        assert run("render", cloth, "-o", tmp_path / f"{name}.png", "--size", "64x48", *options).returncode == 0
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_a_picture_stops_when_its_time_is_over(cloth, tmp_path):
+    """All of its samples would take an hour."""
+    options = ["--size", "640x480", "--samples", "100000", "--time-limit", "0.1"]
+    assert run("render", cloth, "-o", tmp_path / "a.png", *options).returncode == 0
+    assert (tmp_path / "a.png").exists()
+
+
+def test_further_passes_on_request(cloth, tmp_path):
+    openexr = pytest.importorskip("OpenEXR")
+    output = tmp_path / "a.exr"
+    assert run("render", cloth, "-o", output, *SMALL, "--passes", "position,crypto_object").returncode == 0
+    with openexr.File(str(output), separate_channels=True) as file:
+        assert {"position.X", "CryptoObject00.R"} <= file.channels().keys() and "shadow" not in file.channels()
+    result = run("render", cloth, "-o", tmp_path / "a.png", *SMALL, "--passes", "position")
+    assert result.returncode == 1 and "--passes needs an .exr" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("pattern", "frame", "name"),
+    [
+        ("a.####.png", 7, "a.0007.png"),
+        ("a.####.png", -5, "a.-0005.png"),
+        ("a.#.png", 1_000_000, "a.1000000.png"),
+        ("a.#.png", 1_000_001, "a.1000001.png"),
+        ("a.###.png", 24.25, "a.024.25.png"),
+        ("a.##.png", -0.5, "a.-00.5.png"),
+    ],
+)
+def test_names_of_frames(tmp_path, pattern, frame, name):
+    from lisle.cli.render import numbered
+
+    assert numbered(tmp_path / pattern, frame) == tmp_path / name
 
 
 def test_frames_of_an_animation(moving, tmp_path):
@@ -127,6 +176,14 @@ def test_a_frame_beyond_the_animation_fails_before_anything_is_drawn(moving, tmp
         ["render", "cloth.bcc", "-o", "cloth.png", "--yarn-radius", "nan"],
         ["render", "cloth.bcc", "-o", "cloth.png", "--direction", "0,0,0"],
         ["render", "cloth.bcc", "-o", "cloth.png", "--frames", "9-1"],
+        ["render", "cloth.bcc", "-o", "cloth.exr", "--passes", "vector"],
+        ["render", "cloth.bcc", "-o", "cloth.exr", "--passes", "positions"],
+        ["render", "cloth.bcc", "-o", "cloth.png", "--filter", "tent"],
+        ["render", "cloth.bcc", "-o", "cloth.png", "--filter-width", "0"],
+        ["render", "cloth.bcc", "-o", "cloth.png", "--noise-threshold", "-1"],
+        ["render", "cloth.bcc", "-o", "cloth.png", "--time-limit", "nan"],
+        ["render", "cloth.bcc", "-o", "cloth.png", "--transport-photons", "-1"],
+        ["render", "cloth.bcc", "-o", "cloth.png", "-t", "0"],
         ["render", "cloth.bcc", "-o", "cloth.png", "--frames", "1-9", "--frame", "1"],
     ],
 )
