@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Library overrides of settings, kept.
 
-Since 5.0 Blender compares an override's settings with those of the linked data only where these are stored; otherwise it
-notes that all of them differ, and cannot apply that. So the linked data gets its defaults stored, in memory.
+Since 5.0 Blender compares an override's settings with those of the linked data only where these are stored. Elsewhere
+it notes that all of them differ, and cannot apply that. So the linked data gets its defaults stored, in memory.
 """
 
 import bpy

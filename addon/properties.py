@@ -6,6 +6,7 @@ count from then on. Every property has the name of the native field it stands fo
 """
 
 import functools
+from math import radians
 
 import bpy
 
@@ -34,6 +35,13 @@ def _tag(group, _context):
     group.id_data.update_tag()
 
 
+def from_native(group, preset, field):
+    """What a property of a group has for a native preset: Blender's angles are in radians."""
+    if field in group.ANGLES:
+        return radians(getattr(preset, f"{field}_deg"))
+    return getattr(preset, field)
+
+
 def _make_sockets(group, _context):
     """Gives the compositor's nodes the sockets of the passes that are on."""
     for view_layer in group.id_data.view_layers:
@@ -51,29 +59,45 @@ def _fill_from_preset(group, context):
         print(f"Lisle: {error}")
         return
     for field in group.FIELDS:
-        setattr(group, field, getattr(preset, field))
+        setattr(group, field, from_native(group, preset, field))
 
 
 def _length(name, description, **options):
     return FloatProperty(name=name, description=description, precision=4, step=0.1, update=_tag, **options)
 
 
-def _variate(name, description):
-    return FloatVectorProperty(
-        name=name, description=f"{description}: mean and standard deviation", size=2, precision=4, update=_tag
-    )
+def _variate(name, description, **options):
+    description = f"{description}: mean and standard deviation"
+    return FloatVectorProperty(name=name, description=description, size=2, precision=4, update=_tag, **options)
 
 
 def _color(name, description):
     return FloatVectorProperty(name=name, description=description, subtype="COLOR", size=3, min=0, max=1, update=_tag)
 
 
-def _degrees(name, description):
-    return FloatProperty(name=name, description=f"{description}, in degrees", min=0.1, max=90, default=10, update=_tag)
+def _angle(name, description):
+    return FloatProperty(
+        name=name,
+        description=description,
+        min=radians(0.1),
+        max=radians(90),
+        default=radians(10),
+        subtype="ANGLE",
+        update=_tag,
+    )
 
 
 def _pass(name, description):
     return BoolProperty(name=name, description=description, update=_make_sockets)
+
+
+def yarn_radius(description, **options):
+    """A property of an object or an operator."""
+    return FloatProperty(
+        name="Yarn Radius",
+        description=description,
+        **{"min": 0, "soft_max": 0.1, "precision": 5, "step": 0.01, "subtype": "DISTANCE"} | options,
+    )
 
 
 class LisleYarn(bpy.types.PropertyGroup):
@@ -84,6 +108,7 @@ class LisleYarn(bpy.types.PropertyGroup):
         "fiber_radius", "density_beta", "density_epsilon", "r_min", "migration_rate",
         "loop_density", "hair_density", "loop_r_max", "hair_r_min", "hair_r_span", "hair_z_span", "hair_theta_span",
     )  # fmt: skip
+    ANGLES = ()
 
     preset: EnumProperty(
         name="Yarn",
@@ -156,7 +181,7 @@ class LisleYarn(bpy.types.PropertyGroup):
     hair_r_min: _variate("Hair Start", "Distance from the ply's centre at which a hair leaves")
     hair_r_span: _variate("Hair Reach", "How much farther out its tip is")
     hair_z_span: _variate("Hair Slant", "Its extent along the ply")
-    hair_theta_span: _variate("Hair Turn", "Angle it turns around the ply, in radians")
+    hair_theta_span: _variate("Hair Turn", "Angle it turns around the ply", unit="ROTATION")
 
     def native_preset(self, lisle):
         return lisle.Yarn.preset(self.preset)
@@ -166,9 +191,10 @@ class LisleFiber(bpy.types.PropertyGroup):
     """How a fiber scatters light: reflection (R), transmission (TT), and a diffuse part."""
 
     FIELDS = (
-        "color_r", "color_tt", "beta_r_deg", "beta_tt_deg", "gamma_tt_deg",
-        "diffuse", "diffuse_weight", "specular", "specular_beta_deg",
+        "color_r", "color_tt", "beta_r", "beta_tt", "gamma_tt",
+        "diffuse", "diffuse_weight", "specular", "specular_beta",
     )  # fmt: skip
+    ANGLES = ("beta_r", "beta_tt", "gamma_tt", "specular_beta")
 
     preset: EnumProperty(
         name="Fiber",
@@ -184,9 +210,9 @@ class LisleFiber(bpy.types.PropertyGroup):
     )
     color_r: _color("Reflection", "Share of the light that is reflected straight on, before the Fresnel rise")
     color_tt: _color("Transmission", "Share of the light entering a fiber that passes through it: the yarn's colour")
-    beta_r_deg: _degrees("Reflection Width", "Width of the highlight along the fiber")
-    beta_tt_deg: _degrees("Transmission Width", "Spread of transmitted light along the fiber")
-    gamma_tt_deg: _degrees("Transmission Spread", "Spread of transmitted light around the fiber")
+    beta_r: _angle("Reflection Width", "Width of the highlight along the fiber")
+    beta_tt: _angle("Transmission Width", "Spread of transmitted light along the fiber")
+    gamma_tt: _angle("Transmission Spread", "Spread of transmitted light around the fiber")
     diffuse: _color("Diffuse", "Colour of the diffuse part")
     diffuse_weight: FloatProperty(
         name="Diffuse Weight",
@@ -196,7 +222,7 @@ class LisleFiber(bpy.types.PropertyGroup):
         update=_tag,
     )
     specular: _color("Specular", "Colour of the highlight in simple shading")
-    specular_beta_deg: _degrees("Specular Width", "Width of the highlight in simple shading")
+    specular_beta: _angle("Specular Width", "Width of the highlight in simple shading")
 
     def native_preset(self, lisle):
         return lisle.Material.preset(self.preset)
@@ -227,7 +253,7 @@ class LisleSceneSettings(bpy.types.PropertyGroup):
                 "REFERENCE",
                 "Reference",
                 "By a path tracer through every fiber, on all cores: slow, and right. "
-                "It takes 30 to 100 bytes of memory for each segment of a fiber",
+                "It takes 40 bytes of memory for each segment of a fiber, up to 200 while it starts",
                 1,
             ),
         ),
@@ -371,14 +397,8 @@ class LisleObjectSettings(bpy.types.PropertyGroup):
         update=_tag,
     )
 
-    yarn_radius: FloatProperty(
-        name="Yarn Radius",
-        description="Radius of the yarn; 0 takes the curve's own. Multiplies the point radius of legacy curves",
-        min=0,
-        soft_max=0.1,
-        precision=5,
-        subtype="DISTANCE",
-        update=_tag,
+    yarn_radius: yarn_radius(
+        "Radius of the yarn; 0 takes the curve's own. Multiplies the point radius of legacy curves", update=_tag
     )
     use_reference_frame: BoolProperty(
         name="Own Reference Frame",

@@ -9,6 +9,7 @@ Options after the folder: --frames N (24), --size WxH (640x480), --samples N (6)
 
 import argparse
 import sys
+from math import radians
 from pathlib import Path
 
 import bpy
@@ -47,7 +48,7 @@ def add_material(cloth):
     fiber.customize = True
     fiber.color_r = (0.06, 0.06, 0.06)
     fiber.color_tt = (0.74, 0.28, 0.24)
-    fiber.beta_r_deg, fiber.beta_tt_deg = 6, 20
+    fiber.beta_r, fiber.beta_tt = radians(6), radians(20)
     fiber.diffuse = (0.60, 0.09, 0.06)
     cloth.data.materials.append(material)
 

@@ -1,4 +1,4 @@
-"""The picture at the top of the README: a striped stockinette swatch in folds, two yarns in one scene."""
+"""The picture at the top of the README: a striped stockinette swatch in folds, one yarn in three colours."""
 
 import sys
 from math import radians, tan

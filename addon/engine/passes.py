@@ -41,10 +41,14 @@ def _light(name, image):
     return Pass(name, "RGB", "COLOR", image, f"lisle.use_pass_{image}")
 
 
+_CRYPTOMATTE_LEVELS = 6
+"""What the renderer tells apart in a pixel."""
+
+
 def _cryptomattes():
     """Two pairs of id and coverage each; names and letters as other engines have them."""
     for what in ("object", "material"):
-        for number in range(8):
+        for number in range(_CRYPTOMATTE_LEVELS // 2):
             name, setting = f"Crypto{what.title()}{number:02}", f"use_pass_cryptomatte_{what}"
             yield Pass(name, "rgba", "COLOR", f"crypto_{what}", setting, 4 * number, 2 * number + 1)
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A Blender material's Lisle settings as native yarn and material."""
 
+from math import degrees
+
 from ..core.errors import SceneError
 from ..presets import DEFAULT_FIBER, DEFAULT_YARN
 
@@ -22,7 +24,10 @@ def _native(lisle, group):
     preset = group.native_preset(lisle)
     if not group.customize:
         return preset
-    return preset.replace(**{field: _plain(getattr(group, field)) for field in group.FIELDS})
+    values = {field: _plain(getattr(group, field)) for field in group.FIELDS}
+    # Rounded, so that a preset's own angles come back from single precision.
+    angles = {f"{field}_deg": round(degrees(values.pop(field)), 4) for field in group.ANGLES}
+    return preset.replace(**values, **angles)
 
 
 def _plain(value):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What operators share that add a piece of cloth."""
 
-from bpy.props import FloatProperty
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
 
 from .. import native
 from ..core.errors import LisleError
+from ..properties import yarn_radius
 from .yarn_objects import NewMaterial, in_object_mode, yarn_data
 
 
@@ -15,17 +15,7 @@ class AddCloth(NewMaterial, AddObjectHelper):
     bl_options = {"REGISTER", "UNDO"}
     NAME = ""
 
-    yarn_radius: FloatProperty(
-        name="Yarn Radius",
-        description="Radius of the yarn; the cloth grows with it",
-        min=1e-5,
-        soft_max=0.1,
-        default=0.001,
-        precision=4,
-        step=0.01,
-        subtype="DISTANCE",
-        unit="LENGTH",
-    )
+    yarn_radius: yarn_radius("Radius of the yarn; the cloth grows with it", min=1e-5, default=0.001)
 
     @classmethod
     def poll(cls, context):

@@ -16,7 +16,7 @@ from .yarn_objects import curves_data, in_object_mode
 
 
 class LISLE_OT_fibers_to_curves(bpy.types.Operator):
-    """Make the fibers of the selected yarns curves with a radius, all or those that the camera tells apart, for Cycles"""
+    """Make curves of the selected yarns' fibers, all or as many as the camera tells apart; Cycles draws them as hair"""
 
     bl_idname = "lisle.fibers_to_curves"
     bl_label = "Fibers to Curves"

@@ -10,6 +10,7 @@ from bpy_extras.object_utils import object_data_add
 
 from .. import native
 from ..core.errors import LisleError
+from ..properties import yarn_radius
 from .yarn_objects import NewMaterial, in_object_mode, yarn_data
 
 
@@ -33,14 +34,7 @@ class LISLE_OT_import_bcc(bpy.types.Operator, NewMaterial, ImportHelper):
         default=0.01,
         precision=4,
     )
-    yarn_radius: FloatProperty(
-        name="Yarn Radius",
-        description="Radius of the yarn, in metres; 0 estimates it from how close neighbouring strands come",
-        min=0,
-        soft_max=0.1,
-        precision=5,
-        subtype="DISTANCE",
-    )
+    yarn_radius: yarn_radius("Radius of the yarn; 0 estimates it from how close neighbouring strands come")
 
     @classmethod
     def poll(cls, context):

@@ -3,12 +3,13 @@
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, FloatProperty
+from bpy.props import BoolProperty
 from mathutils import Matrix
 
 from .. import native
 from ..core.errors import GeometryError, LisleError, SceneError
 from ..export.follow import HEIGHT, VERTICES, WEIGHTS, follow
+from ..properties import yarn_radius
 from .add_knit import KnitPattern
 from .store_length import NAME as LENGTH
 from .yarn_objects import NewMaterial, yarn_data
@@ -21,17 +22,7 @@ class LISLE_OT_knit_from_mesh(KnitPattern, NewMaterial, bpy.types.Operator):
     bl_label = "Knit from Mesh"
     bl_options = {"REGISTER", "UNDO"}
 
-    yarn_radius: FloatProperty(
-        name="Yarn Radius",
-        description="Radius of the yarn; stitches have their natural size on average",
-        min=1e-5,
-        soft_max=0.1,
-        default=0.001,
-        precision=4,
-        step=0.01,
-        subtype="DISTANCE",
-        unit="LENGTH",
-    )
+    yarn_radius: yarn_radius("Radius of the yarn; stitches have their natural size on average", min=1e-5, default=0.001)
     hide_mesh: BoolProperty(
         name="Hide Mesh",
         description="Keep the mesh out of pictures, and show it as wire. It moves the yarn all the same",

@@ -85,14 +85,14 @@ class LISLE_MATERIAL_PT_fiber_physical(_NumbersPanel, bpy.types.Panel):
     bl_label = "Scattering"
     bl_parent_id = "LISLE_MATERIAL_PT_fiber"
     GROUP = "fiber"
-    FIELDS = ("color_tt", "color_r", "beta_r_deg", "beta_tt_deg", "gamma_tt_deg", "diffuse", "diffuse_weight")
+    FIELDS = ("color_tt", "color_r", "beta_r", "beta_tt", "gamma_tt", "diffuse", "diffuse_weight")
 
 
 class LISLE_MATERIAL_PT_fiber_simple(_NumbersPanel, bpy.types.Panel):
     bl_label = "Simple Shading"
     bl_parent_id = "LISLE_MATERIAL_PT_fiber"
     GROUP = "fiber"
-    FIELDS = ("specular", "specular_beta_deg")
+    FIELDS = ("specular", "specular_beta")
 
 
 PANELS = (

@@ -54,6 +54,8 @@ class LISLE_VIEWLAYER_PT_cryptomatte(LislePanel, bpy.types.Panel):
         column.prop(view_layer, "use_pass_cryptomatte_object", text="Object")
         column.prop(view_layer, "use_pass_cryptomatte_material", text="Material")
         layout.prop(view_layer, "pass_cryptomatte_depth", text="Levels")
+        if view_layer.pass_cryptomatte_depth > 6:
+            layout.label(text="Six levels at most", icon="INFO")
 
 
 PANELS = (LISLE_VIEWLAYER_PT_passes, LISLE_VIEWLAYER_PT_light, LISLE_VIEWLAYER_PT_cryptomatte)

@@ -168,6 +168,9 @@ def test_passes_have_the_sockets_of_other_engines(lisle):
     extra = {"Denoising Albedo", "Denoising Normal", *(name.title() for name in LIGHT), "Tangent", "Coverage"}
     assert extra <= ours
     assert "CryptoObject02" not in ours
+    scene.render.engine, layer.pass_cryptomatte_depth = "LISLE", 16
+    ours = {socket.name for socket in node.outputs if socket.enabled}
+    assert "CryptoObject02" in ours and "CryptoObject03" not in ours
 
 
 @WHEEL

@@ -53,7 +53,11 @@ def test_customizing_starts_from_the_preset(lisle):
     entry = render(lisle).entries[0]
     assert entry.yarn.plies == 2 and entry.yarn.loop_r_max == (0.5, 0.25)
     assert entry.yarn.ply_twist == pytest.approx(0.453)
-    assert entry.material.color_tt == (0.25, 0.5, 0.75) and entry.material.beta_r_deg == pytest.approx(1)
+    assert entry.material.color_tt == (0.25, 0.5, 0.75)
+    assert fiber.beta_tt == pytest.approx(np.radians(27)) and fiber.bl_rna.properties["beta_tt"].subtype == "ANGLE"
+    assert (entry.material.beta_r_deg, entry.material.beta_tt_deg, entry.material.gamma_tt_deg) == (1, 27, 38)
+    fiber.specular_beta = np.radians(90)
+    assert render(lisle).entries[0].material.specular_beta_deg == 90
     yarn.preset = "rayon-1"
     assert yarn.plies == 3, "choosing a preset sets all numbers again"
 
