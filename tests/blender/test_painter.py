@@ -75,20 +75,30 @@ def test_a_finished_picture_is_whole_and_the_mean_of_its_samples(painter, region
 
 
 def test_the_draft_comes_first_and_covers_the_region(painter):
-    scene = Scene()
+    class OneByOne(Scene):
+        def draw(self, *call):
+            drawn = super().draw(*call)
+            if len(self.calls) == 1:
+                self.gate.clear()
+            return drawn
+
+    scene = OneByOne()
     scene.gate.clear()
     painter.show("a", scene.task("k", region=(101, 33, 640, 400)))
-    assert painter.picture("a") is None
+    assert painter.picture("a") is None and painter.news() == []
     scene.gate.set()
     draft = painter.picture("a", 10)
-    assert painter.news() in ([], ["a"])
-    if draft.samples == 0:
-        size, region, samples, _ = scene.calls[0]
-        assert size[0] < SIZE[0] / 2 and samples == 1
-        share = np.array([*size, *size]) / [*SIZE, *SIZE]
-        np.testing.assert_allclose(draft.region, np.array(region) / share)
-        assert draft.region[0] <= 101 and draft.region[1] <= 33 and draft.region[2:] == (640, 400)
-    assert finished(painter, "a").samples == 8
+    assert draft.samples == 0 and painter.news() == [], "the thread waits at the gate"
+    size, region, samples, _ = scene.calls[0]
+    assert size[0] < SIZE[0] / 2 and samples == 1
+    share = np.array([*size, *size]) / [*SIZE, *SIZE]
+    np.testing.assert_allclose(draft.region, np.array(region) / share)
+    assert draft.region[0] <= 101 and draft.region[1] <= 33 and draft.region[2:] == (640, 400)
+    scene.gate.set()
+    while painter.busy():
+        time.sleep(0.002)
+    assert painter.news() == ["a"]
+    assert painter.picture("a").samples == 8 and painter.news() == []
 
 
 def test_a_view_is_never_shown_with_another_views_picture(painter):

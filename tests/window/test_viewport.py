@@ -73,6 +73,24 @@ def test_a_finished_view_is_the_final_picture(view, tmp_path):
     assert final.std() > 10
 
 
+def test_what_is_left_out_is_said_in_the_status(view):
+    view.do(
+        "viewport = sys.modules[PACKAGE + '.engine.viewport'].Viewport\n"
+        "plain, said = viewport.draw, []\n"
+        "def draw(self, view):\n"
+        "    said.append(plain(self, view))\n"
+        "    return said[-1]\n"
+        "viewport.draw = draw\n"
+        "volume = bpy.data.objects.new('Smoke', bpy.data.volumes.new('Smoke'))\n"
+        "bpy.context.scene.collection.objects.link(volume)"
+    )
+    settled(view)
+    view.do("areas()[0].tag_redraw()")
+    status = view.until("answer = said and 'Smoke' in said[-1] and said[-1]")
+    view.do("viewport.draw = plain")
+    assert status.startswith("Sample 8/8 · objects of these kinds are not drawn: 'Smoke' (volume)"), status
+
+
 def test_an_impossible_yarn_is_not_drawn_as_it_was(view):
     world(view, (0.2, 0.4, 0.6))
     settled(view)
