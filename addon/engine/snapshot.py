@@ -32,7 +32,8 @@ class Snapshot:
         scene = depsgraph.scene
         self._lisle = lisle
         self.notes = []
-        """What is left out, in sentences; more may come with the first picture."""
+        """What is left out, in sentences."""
+        self._not_drawn = []
         self.content = collect(lisle, depsgraph, self.notes.append, shows=shows)
         self._at_rest = REST_SHAPES.known(scene, depsgraph.view_layer, self.content)
         if depsgraph.id_type_updated("IMAGE"):
@@ -67,6 +68,10 @@ class Snapshot:
                 for key in self._at_rest
             )
         )
+
+    def left_out(self):
+        """All that is left out, in sentences; more may come with the first picture."""
+        return [*self.notes, *self._not_drawn]
 
     def painter(self, camera, lighting=None, alone=False):
         """The `draw` of a core.painter.Task that shows this from a lisle.Camera.
@@ -105,7 +110,7 @@ class Snapshot:
         """The lisle.Scene; made at the first call, in the painter's thread."""
         if self._native is None:
             scene = self._lisle.Scene(camera=camera)
-            taken = add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES, self.notes.append)
+            taken = add_objects(self._lisle, scene, self.content, self._at_rest, REST_SHAPES, self._not_drawn.append)
             self._meshes, _ = SURFACES.meshes(self._lisle, self.content.meshes, taken)
             self._native = scene
         self._native.camera = camera

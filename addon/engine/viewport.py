@@ -39,7 +39,10 @@ class Viewport:
         except Exception as error:
             self.problem = message_of_bug(error)
             raise
-        self._snapshot = new if old is None or not new.shows_the_same_as(old) else old
+        if old is not None and new.shows_the_same_as(old):
+            old.notes = new.notes
+            new = old
+        self._snapshot = new
 
     def draw(self, view):
         """Draws a core.view.View as the whole picture. Returns a line for the status."""
@@ -48,7 +51,7 @@ class Viewport:
         picture, status = self._picture(view)
         if picture is not None:
             self._screen.draw(picture, view)
-            return " · ".join((status, *dict.fromkeys(self._snapshot.notes)))
+            return " · ".join((status, *dict.fromkeys(self._snapshot.left_out())))
         if self._snapshot.background is not None:
             self._screen.fill(self._snapshot.background, view)
         self._screen.draw_lines(self._snapshot, view)
