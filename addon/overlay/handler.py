@@ -42,7 +42,6 @@ def _draw():
     try:
         shown = _shown.get(address)
         if shown is None:
-            _close_gone()
             shown = _shown[address] = _Shown(address)
         version = (_version, scene.name_full, context.view_layer.name, space.local_view is not None)
         if shown.version != version:
@@ -77,14 +76,14 @@ def _redraw(address):
 
 
 def _forget_closed(screen, address):
-    """Drops the pictures of regions that are no more, when `address` is a new one or a screen has changed."""
+    """Drops the pictures of regions that are no more, when `address` is a new one or a screen has changed: nobody says
+    when one is removed."""
     global _layout
     layout = screen.as_pointer(), sum(len(area.regions) for area in screen.areas)
     if not _shown or (layout == _layout and address in _shown):
         return
     _layout = layout
-    regions = {region.as_pointer() for screen in bpy.data.screens for area in screen.areas for region in area.regions}
-    for closed in _shown.keys() - regions:
+    for closed in _shown.keys() - _regions().keys():
         _close(closed)
 
 
@@ -107,12 +106,6 @@ def _close(address):
     if shown is not None:
         shown.viewport.close()
     return False
-
-
-def _close_gone():
-    """Nobody says when a region is removed."""
-    for address in _shown.keys() - _regions().keys():
-        _close(address)
 
 
 def _close_all():

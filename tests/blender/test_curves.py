@@ -321,7 +321,7 @@ def test_a_million_points_are_read_quickly(entries):
     obj = scenes.curves("Yarn", np.random.default_rng(0).random((1_000_000, 3), np.float32))
     geometry = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).evaluated_geometry()
     begin = time.perf_counter()
-    arrays = read_curves(geometry.curves)
+    arrays = read_curves(geometry.curves, obj.name)
     assert len(arrays.points) == 1_000_000
     # About 15 ms; a Python loop over the points takes more than a second.
     assert time.perf_counter() - begin < 0.3
