@@ -7,12 +7,16 @@ import os
 import time
 
 import numpy as np
+import pytest
 from looking import settled, world
 
 SECONDS = float(os.environ.get("LISLE_SOAK_S", "20"))
 
 LONG_S = 600
 """From here on memory has to stay within 5 %."""
+
+ACTS_A_LOOK = 100
+"""Between two looks at memory."""
 
 ACTS = """
 import random
@@ -104,41 +108,90 @@ if act in told:
 answer = act.__name__
 """
 
-# Python's and numpy's, exactly; and the process's, which the software drivers of Vulkan and OpenGL have their part in.
-TRACE = "import tracemalloc, resource; tracemalloc.start()"
-MEMORY = """
+# The same scene in the same view, whatever was done before: what is held more than the last time is left over.
+CALM = """
+close_other_windows()
+scene = bpy.context.scene
+if bpy.context.window_manager.windows[0].screen.show_fullscreen:
+    operator(bpy.ops.screen.screen_full_area)
+active = bpy.context.view_layer.objects.active
+if active is not None and active.mode != 'OBJECT':
+    operator(bpy.ops.object.mode_set, mode='OBJECT')
+for obj in list(scene.objects):
+    if obj.name.startswith(('Knit', 'Woven', 'Grid')):
+        bpy.data.objects.remove(obj)
+operator(bpy.ops.outliner.orphans_purge, do_recursive=True)
+if space().region_quadviews:
+    operator(bpy.ops.screen.region_quadview)
+scene.frame_set(1)
+scene.lisle.show_overlay, scene.lisle.viewport_samples = False, 4
+scene.render.engine = 'LISLE'
+bpy.data.objects['Yarn'].location = (0, 0, 0)
+space().shading.type = 'SOLID'
+bpy.ops.render.render()
+close_other_windows()
+space().shading.type = 'RENDERED'
+look()
+for _ in range(bpy.context.preferences.edit.undo_steps):
+    bpy.ops.ed.undo_push(message='calm')
+"""
+
+TRACE = "import tracemalloc; tracemalloc.start()"
+# Of Python and numpy.
+TRACED = "answer = tracemalloc.get_traced_memory()[0] / 2**20"
+
+# Of the process. Allocators keep what is free, and each has its own way to be asked for it: the C library's, and TBB's
+# where Blender has that in its place.
+RESIDENT = """
+import ctypes, resource
+libc = ctypes.CDLL(None)
+libc.malloc_trim(0)
+if hasattr(libc, 'scalable_allocation_command'):
+    libc.scalable_allocation_command(0, None)  # TBBMALLOC_CLEAN_ALL_BUFFERS
 with open('/proc/self/statm') as file:
-    resident = int(file.read().split()[1]) * resource.getpagesize() / 2**20
-answer = [tracemalloc.get_traced_memory()[0] / 2**20, resident]
+    answer = int(file.read().split()[1]) * resource.getpagesize() / 2**20
 """
 
 
+# Of the extension, without help of the garbage collector: each of these holds pictures or scenes.
+HELD = """
+import collections, gc
+kinds = collections.Counter(type(held).__name__ for held in gc.get_objects() if PACKAGE in type(held).__module__)
+answer = [kinds[name] for name in ('Viewport', 'Snapshot', '_View', 'Picture')]
+"""
+
+
+def resident(view):
+    """MiB that the process holds with the calm scene in view, of which the extension has one picture."""
+    view.do(CALM)
+    settled(view)
+    assert view.do(HELD) == [1, 1, 1, 1]
+    return view.do(RESIDENT)
+
+
 def test_random_acts(view):
+    if SECONDS >= LONG_S and view.backend == "vulkan":
+        pytest.skip("Blender 5.2 ends by itself on the software driver, without the extension, too: docs/benchmarks.md")
     world(view, (0.2, 0.4, 0.6))
-    view.do(f"SEED = 1\n{ACTS}\n{TRACE}")
-    done, memory = [], []
+    view.do(f"SEED = 1\n{ACTS}")
+    done, memory = [], [resident(view)]
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
         done.append(view.do(STEP))
         time.sleep(0.02 if len(done) % 7 else 0.3)
-        if len(done) % 10 == 0:
-            memory.append(view.do(MEMORY))
-    view.do("tracemalloc.stop()")
+        if len(done) % ACTS_A_LOOK == 0:
+            memory.append(resident(view))
+    memory.append(resident(view))
     # The acts may have split or maximised what the other tests look at.
     view.do("bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath, load_ui=True)")
-    print(len(done), "acts; MiB:", [[round(value) for value in pair] for pair in memory])
+    print(len(done), "acts; MiB:", np.round(memory))
     assert len(done) > SECONDS
-    third = len(memory) // 3
-    if third > 5:
-        parts = memory[third : 2 * third], memory[-third:]
-        # What Python and numpy hold goes up and down with what the views show: a leak raises its lower end.
-        traced = [float(np.percentile([pair[0] for pair in part], 10)) for part in parts]
-        resident = [float(np.median([pair[1] for pair in part])) for part in parts]
-        print("MiB, middle and last third: traced", np.round(traced, 1), "resident", np.round(resident))
-        # In a short run, what views show and what drivers keep outweighs any leak.
-        if SECONDS >= LONG_S:
-            assert traced[1] < 1.05 * traced[0] + 4
-            assert resident[1] < 1.05 * resident[0]
+    if SECONDS >= LONG_S:
+        # In the first third, Blender loads engines and operators, and tables of yarns come up to their number.
+        third = len(memory) // 3
+        middle, last = np.median(memory[third : 2 * third]), np.median(memory[-third:])
+        print(f"MiB in the middle third {middle:.0f}, in the last {last:.0f}: {100 * (last / middle - 1):+.1f} %")
+        assert last < 1.05 * middle
     log = view.news()
     assert "Traceback" not in log and "panicked" not in log, log
 
@@ -157,9 +210,9 @@ def test_two_hundred_sizes_keep_memory_flat(view):
         time.sleep(0.03)
         if number % 10 == 0:
             settled(view)
-            memory.append(view.do(MEMORY))
+            memory.append(view.do(TRACED))
     view.do("tracemalloc.stop()")
-    print("MiB:", [[round(value, 1) for value in pair] for pair in memory])
+    print("MiB:", np.round(memory, 1))
     # The same sizes come again after a hundred.
-    traced = np.array(memory)[:, 0]
+    traced = np.array(memory)
     assert np.abs(traced[11:] - traced[1:10]).max() < 2
