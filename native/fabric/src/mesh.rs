@@ -79,7 +79,7 @@ impl MeshKnit {
         }
         mesh.check()?;
         let (low, high) = mesh.uv_bounds();
-        let grid = UvGrid::new(&mesh.uvs, low, high);
+        let grid = UvGrid::new(&mesh.uvs, low, high)?;
         let cell = relaxed(pattern);
         let stitch_m = DVec2::from(cell.spacings()) * yarn_radius_m;
         let extent_m = mesh.metres_per_uv() * (high - low);
