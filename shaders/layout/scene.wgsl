@@ -38,14 +38,14 @@ struct Frame {
     plane_scattered: u32,
     plane_ambient: u32,
     plane_shadow: u32,
-    // Where among the vector's words a neighbouring frame writes.
+    // Where among the vector's words a frame writes: two, or the same again up to the end.
     neighbour_word: u32,
-    padding_3: u32,
-    padding_4: u32,
+    neighbour_word_end: u32,
     lod_pixels: f32,
     light_count: u32,
-    padding_5: u32,
     occlusion_table: u32,
+    // First pixel of the tile.
+    origin: vec2u,
     ambient: vec3f,
     shadow_resolution: u32,
     background: vec3f,
@@ -55,12 +55,8 @@ struct Frame {
     // Shadow views from this sample's directions of the sky: the first, and how many.
     sky_view: u32,
     sky_view_count: u32,
-    padding: u32,
-    // First pixel of the tile.
-    origin: vec2u,
     // Threads that share a segment's cores; a power of two.
     core_parts: u32,
-    padding_6: u32,
 }
 
 // One yarn object, or one instance of it.
@@ -207,9 +203,10 @@ struct ShadowView {
     near: f32,
     // Texels along one side, from the corner of its map.
     side: f32,
-    padding_0: f32,
-    padding_1: f32,
-    padding_2: f32,
+    // 1 if all its rays are, else 0.
+    parallel: u32,
+    padding_0: u32,
+    padding_1: u32,
 }
 
 // A picture of the sky.

@@ -17,3 +17,9 @@ fn view_direction(pixel_from_render: mat4x4f, pixel: vec2f) -> vec3f {
 
 // Bound on 1 / sin of the angle between a fiber and the view: at its end, a fiber seen from its tip is a sphere.
 const MOST_LEAN: f32 = 4.0;
+
+// Cosine between the axis of a shadow's view and the ray through a place on its map.
+fn axis_cosine(view: ShadowView, texel: vec2f) -> f32 {
+    let aside = (texel - 0.5 * view.side) / view.texels_per_unit;
+    return select(inverseSqrt(1.0 + dot(aside, aside)), 1.0, view.parallel == 1u);
+}

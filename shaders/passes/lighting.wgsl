@@ -164,7 +164,7 @@ struct Shadow {
     open: f32,
     // Share that meshes take, which let nothing through.
     solid: f32,
-    // Way through yarns and gaps of the light that they do not, render space.
+    // Way of the light that they do not, through yarns and gaps, render space.
     way: f32,
 }
 
@@ -197,7 +197,7 @@ fn shadow_map(view_index: u32, position: vec3f, bias: f32) -> Shadow {
         }
     }
     let taps = f32((FILTER - 1) * (FILTER - 1));
-    return Shadow(1.0 - blocked / taps, solid / taps, above / (max(blocked, 1e-6) * view.depth_scale) + bias);
+    return Shadow(1.0 - blocked / taps, solid / taps, (above / (max(blocked, 1e-6) * view.depth_scale) + bias) / axis_cosine(view, texel.xy));
 }
 
 // Which face of a cube map looks along a direction: +x, -x, +y, -y, +z, -z.

@@ -30,7 +30,7 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
     }
     let s = segment_at(draw, segment);
     let size = f32(frame.shadow_resolution);
-    let orthographic = abs(view.texel_from_render[0].z) + abs(view.texel_from_render[1].z) + abs(view.texel_from_render[2].z) == 0.0;
+    let orthographic = view.parallel == 1u;
     let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
     let bend = length(s.position.c) + 3.0 * length(s.position.d);
     let start = to_pixel(view.texel_from_render, s.position.a);
@@ -55,7 +55,9 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
                     let texel = select(vec2i(j, i), vec2i(i, j), walk.flat);
                     let hit = line_hit(line, vec2f(texel) + 0.5);
                     if hit.covered {
-                        let bulge = hit.bulge / hit.radius * mix(previous_radius, next_radius, hit.t);
+                        // A tube bulges towards the light, aside of the axis of a wide view.
+                        let cosine = axis_cosine(view, vec2f(texel) + 0.5);
+                        let bulge = cosine * hit.bulge / hit.radius * mix(previous_radius, next_radius, hit.t);
                         let depth = line_depth(line, line_share(line, hit.t)) - bulge;
                         let nearness = clamp(1.0 - (depth - view.depth_min) * view.depth_scale, 0.0, 1.0);
                         // Non-negative floats order like their bits.

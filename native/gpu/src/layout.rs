@@ -63,12 +63,11 @@ shared! {
         plane_ambient: u32,
         plane_shadow: u32,
         neighbour_word: u32,
-        padding_3: u32,
-        padding_4: u32,
+        neighbour_word_end: u32,
         lod_pixels: f32,
         light_count: u32,
-        padding_5: u32,
         occlusion_table: u32,
+        origin: [u32; 2],
         ambient: Vec3,
         shadow_resolution: u32,
         background: Vec3,
@@ -76,10 +75,7 @@ shared! {
         least_w: f32,
         sky_view: u32,
         sky_view_count: u32,
-        padding: u32,
-        origin: [u32; 2],
         core_parts: u32,
-        padding_6: u32,
     }
     Draw {
         render_from_object_x: Vec4,
@@ -192,9 +188,9 @@ shared! {
         texels_per_unit: f32,
         near: f32,
         side: f32,
-        padding_0: f32,
-        padding_1: f32,
-        padding_2: f32,
+        parallel: u32,
+        padding_0: u32,
+        padding_1: u32,
     }
     Meshes {
         clip_depth: [f32; 2],

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use crate::layout::{self, LIGHT_AREA, LIGHT_POINT, LIGHT_SUN};
-use crate::sampling::{basis, disc, r2, sphere};
+use crate::sampling::{Use, basis, disc, pair, sphere};
 use crate::view::Bounds;
 use crate::{Cone, Environment, Light};
 
@@ -58,6 +58,7 @@ fn shadow_view(rows: [DVec4; 4], scale: f64, near: f64, depth: (f64, f64), side:
         texels_per_unit: scale as f32,
         near: near as f32,
         side: side as f32,
+        parallel: u32::from(w == DVec4::W),
         ..Default::default()
     }
 }
@@ -105,7 +106,7 @@ impl LightSample {
     pub fn new(lights: &[Light], origin: DVec3, extent: Extent, resolution: u32, index: u32, seed: u32) -> Self {
         let mut sample = Self { lights: Vec::new(), views: Vec::new(), extent, resolution };
         for (number, light) in lights.iter().enumerate() {
-            sample.add(light, origin, r2(index, seed, 16 + number as u32));
+            sample.add(light, origin, pair(index, seed, Use::Light(number as u32)));
         }
         sample
     }

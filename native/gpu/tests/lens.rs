@@ -3,7 +3,7 @@
 mod support;
 
 use glam::{DMat4, DVec3};
-use lisle_gpu::{Camera, Image, Lens, Object, Scene, Settings};
+use lisle_gpu::{Camera, Filter, Image, Lens, Object, Scene, Settings};
 use support::{curves, draw, exact, looking, measure, object, orthographic, perspective, preset, scene, yarns_of};
 
 const SIZE: [u32; 2] = [120, 90];
@@ -114,16 +114,43 @@ fn a_region_is_a_part_of_the_whole_and_the_first_sample_is_sharp() {
     }
 }
 
+/// The largest difference between a picture and the mean of two others.
+fn off_the_mean(whole: &Image, parts: &[Image; 2]) -> f32 {
+    let off = |(i, whole): (usize, &[f32; 4])| {
+        let mean = |c: usize| 0.5 * (parts[0].combined[i][c] + parts[1].combined[i][c]);
+        (0..4).map(|c| (whole[c] - mean(c)).abs()).fold(0.0, f32::max)
+    };
+    whole.combined.iter().enumerate().map(off).fold(0.0, f32::max)
+}
+
 #[test]
 fn a_picture_can_be_taken_in_parts() {
-    let scene = lit(vec![thread()], through(2.5));
-    let settings = Settings { filter_width: 1.5, ..settings(16) };
-    let whole = draw(&scene, &settings);
-    let [first, second] =
-        [0, 8].map(|first_sample| draw(&scene, &Settings { samples: 8, first_sample, ..settings.clone() }));
-    for ((whole, a), b) in whole.combined.iter().zip(&first.combined).zip(&second.combined) {
-        for c in 0..4 {
-            assert!((whole[c] - 0.5 * (a[c] + b[c])).abs() < 1e-6);
+    // Bits of yarn beyond each border, at distances that a wide filter reaches; each sample culls for itself with a lens, one for all without.
+    let (width, height) = (4.0 / 3.0, 1.0);
+    let around = (0..32).map(|i| {
+        let (beyond, along) = (0.05 + 0.05 * f64::from(i / 4), 0.2 * f64::from(i / 4) - 0.7);
+        let [x, z] = match i % 4 {
+            0 => [along, height + beyond],
+            1 => [along, -height - beyond],
+            2 => [width + beyond, along],
+            _ => [-width - beyond, along],
+        };
+        Object {
+            world_from_object: DMat4::from_translation(DVec3::new(x, 0.0, z)),
+            ..object(&yarns_of(curves::straight(0.04, 3), false, 0.02), &preset("silk-1"))
+        }
+    });
+    let objects: Vec<_> = std::iter::once(thread()).chain(around).collect();
+    for lens in [through(2.5).lens, None] {
+        for (filter, filter_width) in [(Filter::BlackmanHarris, 1.5), (Filter::Box, 40.0)] {
+            let scene = lit(objects.clone(), Camera { lens, ..through(2.5) });
+            let settings = Settings { filter, filter_width, ..settings(32) };
+            let whole = draw(&scene, &settings);
+            let parts =
+                [0, 16].map(|first_sample| draw(&scene, &Settings { samples: 16, first_sample, ..settings.clone() }));
+            let off = off_the_mean(&whole, &parts);
+            assert!(off < 1e-6, "{filter:?}, lens {}: {off}", lens.is_some());
+            assert!(off_the_mean(&whole, &[whole.clone(), parts[0].clone()]) > 1e-3, "the comparison passes anything");
         }
     }
 }

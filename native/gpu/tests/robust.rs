@@ -8,7 +8,7 @@ use glam::{DMat4, DVec3, Vec3};
 use lisle_core::scattering::Material;
 use lisle_core::yarn::Yarn;
 use lisle_core::{Curves, Yarns};
-use lisle_gpu::{Camera, Error, Image, Light, Object, Renderer, Scene, Settings, Shading};
+use lisle_gpu::{Camera, Error, Image, Light, Mesh, MeshKind, Object, Renderer, Scene, Settings, Shading, Triangles};
 use support::{
     curves, draw, exact, looking, measure, object, orthographic, perspective, picture, preset, scene, sun, try_draw,
     yarns_of,
@@ -132,6 +132,26 @@ fn what_cannot_be_drawn_is_named() {
     assert!(matches!(missing, Err(Error::NoAdapter { .. })));
     // The renderer still works.
     assert!(measure::area(&draw(&good, &settings())) > 100.0);
+}
+
+#[test]
+fn a_tall_picture_with_a_mesh_is_drawn_in_tiles() {
+    // Taller than textures are.
+    let size = [2, 40_000];
+    let camera = orthographic(front(), 2.0, size, [0.0, 0.0]);
+    let corners = vec![[-9.0, 1.0, -9.0], [9.0, 1.0, -9.0], [9.0, 1.0, 9.0], [-9.0, 1.0, 9.0]];
+    let mesh = Mesh {
+        name: "wall".into(),
+        id: 7,
+        labels: Default::default(),
+        triangles: Arc::new(Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]], None).expect("a square")),
+        base_color: Vec3::ONE,
+        kind: MeshKind::Shaded,
+        world_from_object: DMat4::IDENTITY,
+    };
+    let scene = Scene { meshes: vec![mesh], ..scene(vec![], camera) };
+    let image = draw(&scene, &Settings { samples: 1, size, ..settings() });
+    assert!(image.object_id.iter().all(|id| *id == 7));
 }
 
 #[test]

@@ -61,12 +61,12 @@ impl PixelFilter {
 
 #[cfg(test)]
 mod tests {
-    use super::super::r2;
+    use super::super::{Use, pair};
     use super::*;
 
     #[test]
     fn the_first_sample_is_the_centre() {
-        let offset = PixelFilter::new(Filter::default(), 1.5).offset(r2(0, 0, 0));
+        let offset = PixelFilter::new(Filter::default(), 1.5).offset(pair(0, 0, Use::Pixel));
         assert!(offset[0].abs() < 1e-12 && offset[1].abs() < 1e-12, "{offset:?}");
     }
 
@@ -79,7 +79,7 @@ mod tests {
         {
             let filter = PixelFilter::new(kind, 2.0);
             let n = 20_000;
-            let variance = (0..n).map(|i| filter.offset(r2(i, 0, 0))[0].powi(2)).sum::<f64>() / f64::from(n);
+            let variance = (0..n).map(|i| filter.offset(pair(i, 0, Use::Pixel))[0].powi(2)).sum::<f64>() / f64::from(n);
             assert!((variance - expected).abs() < 2e-4, "{kind:?}: {variance}");
         }
     }

@@ -9,4 +9,4 @@ mod sequence;
 pub use filter::{Filter, PixelFilter};
 pub use hash::{hash_combine, hash_u32, normal_from_hash, unit_from_hash};
 pub use random::Random;
-pub use sequence::{basis, concentric_disc, disc, lens_pair, r2, sphere, time};
+pub use sequence::{Use, basis, concentric_disc, disc, pair, sphere};

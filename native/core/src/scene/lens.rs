@@ -72,7 +72,7 @@ impl Lens {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::lens_pair;
+    use crate::sampling::{Use, pair};
 
     const ROUND: Lens = Lens { aperture_radius: 0.3, focus_distance: 2.0, blades: 0, rotation_rad: 0.0, ratio: 1.0 };
 
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn the_centre_is_the_first() {
         for lens in cases() {
-            let [x, y] = lens.point(lens_pair(0, 0));
+            let [x, y] = lens.point(pair(0, 0, Use::Lens));
             assert!(x.hypot(y) < 1e-12, "{lens:?}");
         }
     }
@@ -99,7 +99,7 @@ mod tests {
         // Second moments of a uniform regular polygon: area × (2 + cos(2π/n)) / 12 R² about either axis; of a disc: R²/4.
         for lens in cases() {
             let n = 20_000;
-            let points: Vec<_> = (0..n).map(|i| lens.point(lens_pair(i, 7))).collect();
+            let points: Vec<_> = (0..n).map(|i| lens.point(pair(i, 7, Use::Lens))).collect();
             let moment = |axis: usize| points.iter().map(|p| p[axis] * p[axis]).sum::<f64>() / f64::from(n);
             let unit = if lens.blades < 3 { 0.25 } else { (2.0 + (TAU / f64::from(lens.blades)).cos()) / 12.0 };
             let expected = unit * lens.aperture_radius * lens.aperture_radius;
@@ -120,7 +120,7 @@ mod tests {
     fn a_polygon_has_a_side_towards_x() {
         let lens = Lens { blades: 6, ..ROUND };
         let inner = 0.3 * (TAU / 12.0).cos();
-        let points: Vec<_> = (0..5000).map(|i| lens.point(lens_pair(i, 1))).collect();
+        let points: Vec<_> = (0..5000).map(|i| lens.point(pair(i, 1, Use::Lens))).collect();
         let most = |axis: usize| points.iter().map(|p| p[axis].abs()).fold(0.0, f64::max);
         assert!(most(0) <= inner + 1e-12 && most(0) > 0.98 * inner, "{}", most(0));
         assert!(most(1) <= 0.3 && most(1) > 0.29, "{}", most(1));

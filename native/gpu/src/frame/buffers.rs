@@ -1,6 +1,6 @@
 //! What a picture needs on the GPU besides its scene.
 
-use super::tiles::{most_of, tile_pixels, tiles};
+use super::tiles::{TileLimits, most_of, tiles};
 use super::{BLOCK, FrameInput};
 use crate::device::Gpu;
 use crate::mesh_raster::MeshTargets;
@@ -60,11 +60,12 @@ impl FrameBuffers {
         let views = u64::from(lights::most_views(&input.scene.lights, sky_views, has_meshes));
         // As many texels as one binding holds.
         let most_texels = gpu.limits.max_storage_buffer_binding_size / 4 / views.max(1);
-        let shadow_resolution = input.settings.shadow_resolution.min(most_texels.isqrt() as u32);
-        let largest = tiles(region, tile_pixels(gpu, &input.planes))
-            .into_iter()
-            .map(|[_, _, w, h]| u64::from(w) * u64::from(h))
-            .max();
+        let shadow_resolution = input
+            .settings
+            .shadow_resolution
+            .min(most_texels.isqrt().min(gpu.limits.max_texture_dimension_2d.into()) as u32);
+        let tiles = tiles(region, TileLimits::new(gpu, &input.planes));
+        let largest = tiles.iter().map(|[_, _, w, h]| u64::from(*w) * u64::from(*h)).max();
         let capacity = Capacity {
             pixels: largest.unwrap_or(0),
             planes: u64::from(input.planes.count),
@@ -74,7 +75,7 @@ impl FrameBuffers {
             lights: u64::from(input.light_count()),
             views,
             shadow_resolution,
-            tile: if has_meshes { most_of(&tiles(region, tile_pixels(gpu, &input.planes))) } else { [1, 1] },
+            tile: if has_meshes { most_of(&tiles) } else { [1, 1] },
             carrier: if has_meshes { shadow_resolution } else { 1 },
         };
         if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
@@ -120,6 +121,11 @@ impl FrameBuffers {
     /// Texels along a side of a shadow map: as asked for, or as many as fit.
     pub(super) fn shadow_resolution(&self) -> u32 {
         self.capacity.shadow_resolution
+    }
+
+    /// Shadow maps.
+    pub(super) fn views(&self) -> u64 {
+        self.capacity.views
     }
 
     pub(super) fn bytes(&self) -> u64 {

@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 
 use glam::{DVec3, Vec3};
 
-use self::threads::{core_parts, fold, nearest_w, parts};
-use self::tiles::{tile_pixels, tiles};
+use self::threads::{core_parts, fold, nearest_w, parts, parts_within};
+use self::tiles::{TileLimits, tiles};
 use crate::aov::{NEIGHBOUR_WORDS, Planes};
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
@@ -23,7 +23,7 @@ use crate::meshes::{MeshBuffers, MeshPlaces};
 use crate::motion::{Moment, Motion, Neighbour};
 use crate::noise::Noise;
 use crate::pipelines::{Bindings, Pipelines};
-use crate::sampling::{self, PixelFilter, lens_pair, r2, sphere};
+use crate::sampling::{PixelFilter, Use, pair, sphere};
 use crate::shader::{Film, Pass, Resolve};
 use crate::timing::Timer;
 use crate::upload::SceneBuffers;
@@ -124,6 +124,10 @@ impl<'a> Recorder<'a> {
     ) -> Result<Self, Error> {
         let FrameInput { scene, settings, planes, .. } = input;
         let draws = &moment.draws;
+        if frame.views() > threads::MOST_LAYERS {
+            let reason = format!("they have {} shadow maps, more than {}", frame.views(), threads::MOST_LAYERS);
+            return Err(Error::input("lights", reason));
+        }
         let slot_bits = bits_for(draws.most_slots);
         let depth_bits = (64 - PLACE_BITS - slot_bits - bits_for(draws.segment_count)).min(*DEPTH_BITS.end());
         if depth_bits < *DEPTH_BITS.start() {
@@ -156,7 +160,8 @@ impl<'a> Recorder<'a> {
                 shadow_resolution: frame.shadow_resolution(),
                 background,
                 opaque_background: u32::from(!settings.transparent),
-                cull_margin: 0.5 * settings.filter_width,
+                // From one end of the filter, where the sample that culls may be, to the other.
+                cull_margin: settings.filter_width,
                 plane_position: planes.position,
                 plane_uv: planes.uv,
                 plane_vector: planes.vector,
@@ -282,7 +287,7 @@ impl<'a> Recorder<'a> {
         };
         let wanted = &self.input.settings.aovs;
         image.aovs = wanted.iter().map(|aov| (*aov, vec![0.0; aov.channels() * count])).collect();
-        let tiles = tiles(region, tile_pixels(self.gpu, &self.input.planes));
+        let tiles = tiles(region, TileLimits::new(self.gpu, &self.input.planes));
         let samples = self.input.settings.samples;
         let (start, mut fewest) = (Instant::now(), samples);
         let total = samples.saturating_mul(tiles.len() as u32);
@@ -296,7 +301,7 @@ impl<'a> Recorder<'a> {
             for sample in 0..samples {
                 self.sample(*tile, sample)?;
                 drawn = sample + 1;
-                let done = number as u32 * samples + sample + 1;
+                let done = (number as u32).saturating_mul(samples).saturating_add(sample + 1);
                 self.listener.report(Progress::Samples { done, total })?;
                 let is_late = deadline.is_some_and(|deadline| Instant::now() >= deadline);
                 let film = || self.read(&[(&self.frame.film[0], 16 * u64::from(tile[2]) * u64::from(tile[3]))]);
@@ -331,16 +336,17 @@ impl<'a> Recorder<'a> {
         let FrameInput { scene, settings, motion, .. } = *self.input;
         let [left, top, width, height] = tile;
         let number = settings.first_sample.wrapping_add(index);
+        let pair = |index, of| pair(index, settings.seed, of);
         if motion.is_moving() {
-            self.move_to(sampling::time(number, settings.seed))?;
+            self.move_to(pair(number, Use::Time)[0])?;
         }
         let view = self.moment.view;
         if index == 0 {
             self.first_origin = view.origin;
         }
-        let jitter = if number == 0 { [0.0; 2] } else { self.filter.offset(r2(number, settings.seed, 0)) };
+        let jitter = if number == 0 { [0.0; 2] } else { self.filter.offset(pair(number, Use::Pixel)) };
         let seen = match &view.lens {
-            Some(lens) => view.through(lens, lens.point(lens_pair(number, settings.seed))),
+            Some(lens) => view.through(lens, lens.point(pair(number, Use::Lens))),
             None => view,
         };
         self.uniform.origin = [left, top];
@@ -363,7 +369,7 @@ impl<'a> Recorder<'a> {
             let sky_views = self.input.sky_views();
             (self.uniform.sky_view, self.uniform.sky_view_count) = (lights.views.len() as u32, sky_views);
             let first = number.wrapping_mul(sky_views);
-            let sky = |view| sphere(r2(first.wrapping_add(view), settings.seed, 1));
+            let sky = |view| sphere(pair(first.wrapping_add(view), Use::Sky));
             (0..sky_views).for_each(|view| lights.add_sky(sky(view)));
             if !extent.wide.is_empty() {
                 meshes.wide_sky_view = lights.views.len() as u32;
@@ -372,7 +378,7 @@ impl<'a> Recorder<'a> {
             if let Some(environment) = self.input.environment() {
                 let count = self.input.environment_suns();
                 for sun in 0..count {
-                    let uniform = r2(number.wrapping_mul(count).wrapping_add(sun), settings.seed, 2);
+                    let uniform = pair(number.wrapping_mul(count).wrapping_add(sun), Use::Environment);
                     lights.add_environment(environment, uniform, 1.0 / f64::from(count));
                 }
             }
@@ -428,6 +434,7 @@ impl<'a> Recorder<'a> {
         let radius = |view: &layout::ShadowView| draws.radius_max * f64::from(view.texels_per_unit) / nearest_w(view);
         let radius = views.iter().map(radius).fold(0.0, f64::max).min(resolution);
         let parts = parts(draws.slenderness * radius, 2.0 * radius + 2.0, 8.0, 2.0 * resolution);
+        let parts = parts_within(parts, count);
         self.gpu.queue.write_buffer(&self.frame.pass_uniform, 0, bytemuck::cast_slice(&[first, parts, 0, 0]));
         let mut encoder = self.encoder();
         let bytes = 4 * u64::from(self.frame.shadow_resolution()).pow(2);

@@ -20,6 +20,15 @@ pub(super) fn parts(length: f64, width: f64, steps: f64, most: f64) -> u32 {
     ((visits / VISITS).ceil().clamp(1.0, f64::from(MOST)) as u32).next_power_of_two()
 }
 
+/// Layers of a dispatch that a device takes.
+pub(super) const MOST_LAYERS: u64 = 65535;
+
+/// As many threads, or fewer where so many layers of a dispatch each take them: a power of two.
+pub(super) fn parts_within(parts: u32, layers: u32) -> u32 {
+    let most = (MOST_LAYERS as u32 / layers).max(1);
+    parts.min(1 << most.ilog2())
+}
+
 /// Threads that share a segment's cores: they are drawn while a fiber is thinner than the level of detail's threshold.
 pub(super) fn core_parts(input: &FrameInput, draws: &Draws, most: u32) -> u32 {
     let of = |object: &Object| {
@@ -34,6 +43,19 @@ pub(super) fn core_parts(input: &FrameInput, draws: &Draws, most: u32) -> u32 {
 
 /// Least w that a shadow view measures sizes at: 1 for a parallel one.
 pub(super) fn nearest_w(view: &layout::ShadowView) -> f64 {
-    let parallel = view.texel_from_render.row(2) == glam::Vec4::W;
-    if parallel { 1.0 } else { f64::from(view.near).max(1e-30) }
+    if view.parallel == 1 { 1.0 } else { f64::from(view.near).max(1e-30) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_stay_within_what_a_device_takes() {
+        for (parts, layers, expected) in [(64, 8, 64), (64, 1023, 64), (64, 1024, 32), (64, 40000, 1), (1, 65535, 1)] {
+            let found = parts_within(parts, layers);
+            assert_eq!(found, expected, "{parts} for {layers} layers");
+            assert!(u64::from(found) * u64::from(layers) <= MOST_LAYERS);
+        }
+    }
 }
