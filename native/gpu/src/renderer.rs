@@ -240,10 +240,13 @@ impl Drawing {
         drop(recorder);
         buffers.displaced = !motion.shapes.is_empty();
         drop(motion);
-        self.scene = Some(buffers);
-        self.sky = Some(sky);
-        self.meshes = Some(meshes);
-        self.frame = Some(frame);
+        // After an error of the device, of memory for one, buffers may be none: nothing of them is kept.
+        if matches!(image, Ok(_) | Err(Error::Cancelled)) {
+            self.scene = Some(buffers);
+            self.sky = Some(sky);
+            self.meshes = Some(meshes);
+            self.frame = Some(frame);
+        }
         image
     }
 }
