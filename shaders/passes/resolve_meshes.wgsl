@@ -12,13 +12,26 @@ struct MeshPoint {
     draw: u32,
 }
 
-fn mesh_normal(draw: u32, corner: u32) -> vec3f {
-    let n = unpack_unit_vector(mesh_normals[mesh_draws[draw].first_normal + corner - mesh_draws[draw].first_corner]);
-    // By the cofactors: right under any scale, and of any length.
-    let x = mesh_draws[draw].render_from_object_x.xyz;
-    let y = mesh_draws[draw].render_from_object_y.xyz;
-    let z = mesh_draws[draw].render_from_object_z.xyz;
-    return normalize(vec3f(dot(cross(y, z), n), dot(cross(z, x), n), dot(cross(x, y), n)));
+// Of the corners' normals, and by the cofactors of the transform, so that it is right under any scale; `facing` where next to nothing is left.
+fn mesh_normal(draw: u32, first: u32, shares: vec3f, facing: vec3f) -> vec3f {
+    let place = mesh_draws[draw].first_normal + first - mesh_draws[draw].first_corner;
+    var n = vec3f(0.0);
+    for (var i = 0u; i < 3u; i++) {
+        n += unpack_unit_vector(mesh_normals[place + i]) * shares[i];
+    }
+    var x = mesh_draws[draw].render_from_object_x.xyz;
+    var y = mesh_draws[draw].render_from_object_y.xyz;
+    var z = mesh_draws[draw].render_from_object_z.xyz;
+    let scale = 1.0 / max(max(length(x), length(y)), max(length(z), 1e-30));
+    x *= scale;
+    y *= scale;
+    z *= scale;
+    let turned = vec3f(dot(cross(y, z), n), dot(cross(z, x), n), dot(cross(x, y), n));
+    let size = length(turned);
+    if size < 1e-6 {
+        return facing;
+    }
+    return turned * (select(-1.0, 1.0, dot(turned, facing) >= 0.0) / size);
 }
 
 // Where the ray through a place of the frame meets a triangle.
@@ -46,8 +59,7 @@ fn mesh_point(triangle: u32, pixel: vec2f) -> MeshPoint {
     facing *= select(-1.0, 1.0, dot(facing, view) >= 0.0) / max(length(facing), 1e-30);
     var normal = facing;
     if mesh_draws[draw].first_normal != NONE {
-        normal = normalize(mesh_normal(draw, first) * shares.x + mesh_normal(draw, first + 1u) * shares.y + mesh_normal(draw, first + 2u) * shares.z);
-        normal *= select(-1.0, 1.0, dot(normal, facing) >= 0.0);
+        normal = mesh_normal(draw, first, shares, facing);
     }
     return MeshPoint(position, facing, normal, draw);
 }
@@ -69,7 +81,8 @@ fn surface_open(view_index: u32, position: vec3f, facing: vec3f, toward: vec3f) 
     return shadow_map(view_index, position + off, texel).open;
 }
 
-// Share of a light that yarns and meshes let through: by the map about the yarns, or beyond it by that about all meshes.
+// Share of a light that is left beside yarns and meshes, as if neither let any through: by the map about the yarns, or beyond it by that
+// about all meshes.
 fn surface_shadow(light: Light, point: MeshPoint, toward: vec3f) -> f32 {
     if light.shadow_view_count == 6u {
         return surface_open(light.shadow_view + cube_face(point.position - light.position), point.position, point.facing, toward);
