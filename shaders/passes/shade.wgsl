@@ -27,7 +27,7 @@ fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
     if PHYSICAL {
         return physical_ambient(material, ambient_factors(material, sin_theta_o));
     }
-    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0));
+    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0), vec3f(0.0));
 }
 
 // Radiance of a fiber per irradiance, by light scattered once.
@@ -61,6 +61,8 @@ const MOST_SKY_VIEWS: u32 = 8u;
 struct Around {
     // Share of them that is sky.
     open: f32,
+    // What Lambert's term takes in of a sky of radiance 1, on the side that is seen.
+    facing: f32,
     // Light scattered more than once, under radiance 1 from the sky.
     sky: vec3f,
     // Radiance, by all orders, under radiance 1 from the other yarns in each direction.
@@ -79,7 +81,9 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
         if MULTIPLE {
             let scattered = transport_ambient(transport, seen.section, direction);
             around.sky += (share * open) * scattered;
-            around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
+            let own = self_shadows(yarn, seen, direction);
+            around.yarns[i] = (share * by_yarns) * (scattered + even * own.width);
+            around.facing += (4.0 * share * open * own.width) * max(dot(surface.normal, direction), 0.0);
         }
     }
     return around;
@@ -210,7 +214,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
     var sky = (even_lobes.around * own_sky + even_lobes.through * own_behind) * around.open;
     if MULTIPLE {
-        sky += around.sky;
+        sky += around.sky + even_lobes.diffuse * (around.facing - own_sky * around.open);
         for (var k = 0u; k < frame.sky_view_count; k++) {
             sky += around.yarns[k] * albedo.albedo * (CLOTH_OPEN * gain);
         }

@@ -45,6 +45,8 @@ fn physical_lobes(material: Material, normalizers: Normalizers, angles: FiberAng
 struct EvenLight {
     around: vec3f,
     through: vec3f,
+    // Of `around`, Lambert's term.
+    diffuse: vec3f,
 }
 
 // `factors`: reflect, reflect at grazing angles, transmit.
@@ -52,5 +54,5 @@ fn physical_ambient(material: Material, factors: vec3f) -> EvenLight {
     let reflected = material.color_r * factors.x + (1.0 - material.color_r) * factors.y;
     let transmitted = (1.0 - material.color_r) * material.color_tt * factors.z;
     let w = material.diffuse_weight;
-    return EvenLight(reflected * (1.0 - w) + material.diffuse * w, transmitted * (1.0 - w));
+    return EvenLight(reflected * (1.0 - w) + material.diffuse * w, transmitted * (1.0 - w), material.diffuse * w);
 }
