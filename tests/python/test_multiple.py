@@ -62,13 +62,14 @@ def test_progress_counts_tables_and_samples(renderer, lit):
         seen: list[float] = []
         renderer.render(scene, samples=3, transport_photons=41_000, progress=seen.append)
         assert seen == sorted(seen) and seen[-1] == 1
-        assert len(seen) == (3 + 3 if first else 3), seen
+        # It is called in between as well; each batch of photons and each sample is a step.
+        assert len({fraction for fraction in seen if fraction > 0}) == (3 + 3 if first else 3), seen
 
 
 def test_simple_shading_has_no_tables(renderer, lit):
     scene = lit("polyester-1", (0.3, 1, -0.4))
     seen: list[float] = []
     picture = renderer.render(scene, samples=2, shading="simple", progress=seen.append)
-    assert len(seen) == 2
+    assert {fraction for fraction in seen if fraction > 0} == {0.5, 1.0}
     same = renderer.render(scene, samples=2, shading="simple", transport_photons=0)
     assert np.array_equal(picture["combined"], same["combined"])
