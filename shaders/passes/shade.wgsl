@@ -27,7 +27,7 @@ fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
     if PHYSICAL {
         return physical_ambient(material, ambient_factors(material, sin_theta_o));
     }
-    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0), vec3f(0.0));
+    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0));
 }
 
 // Radiance of a fiber per irradiance, by light scattered once.
@@ -38,12 +38,6 @@ fn reflected_once(material: Material, surface: Surface, direction: vec3f, view: 
         return physical_lobes(material, normalizers_at(material, angles.sin_theta_i), angles, cos_normal);
     }
     return simple_lobes(material, angles, cos_normal);
-}
-
-// Of that, what goes through the fiber: R + TT alone scatters more than once.
-fn transmitted_once(material: Material, surface: Surface, direction: vec3f, view: vec3f) -> vec3f {
-    let angles = fiber_angles(surface.tangent, direction, view);
-    return physical_transmission(material, normalizers_at(material, angles.sin_theta_i), angles);
 }
 
 // Share of the light behind a fiber, as its TT lobe takes it in, that the yarn's own fibers let through: at two azimuths, one deviation off.
@@ -61,15 +55,13 @@ const MOST_SKY_VIEWS: u32 = 8u;
 struct Around {
     // Share of them that is sky.
     open: f32,
-    // What Lambert's term takes in of a sky of radiance 1, on the side that is seen.
-    facing: f32,
     // Light scattered more than once, under radiance 1 from the sky.
     sky: vec3f,
     // Radiance, by all orders, under radiance 1 from the other yarns in each direction.
     yarns: array<vec3f, MOST_SKY_VIEWS>,
 }
 
-fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, even: vec3f) -> Around {
+fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, hidden: vec3f, even: vec3f) -> Around {
     var around: Around;
     let share = 1.0 / f32(max(frame.sky_view_count, 1u));
     for (var i = 0u; i < frame.sky_view_count; i++) {
@@ -79,11 +71,9 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
         let open = 1.0 - shadow.solid - by_yarns;
         around.open += share * open;
         if MULTIPLE {
-            let scattered = transport_ambient(transport, seen.section, direction);
+            let scattered = transport_ambient(transport, seen.section, direction) * hidden;
             around.sky += (share * open) * scattered;
-            let own = self_shadows(yarn, seen, direction);
-            around.yarns[i] = (share * by_yarns) * (scattered + even * own.width);
-            around.facing += (4.0 * share * open * own.width) * max(dot(surface.normal, direction), 0.0);
+            around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
         }
     }
     return around;
@@ -99,10 +89,8 @@ const MOST_YARNS_ABOVE: f32 = 3.0;
 struct Passing {
     // Share that comes straight, beside them and between their fibers.
     straight: f32,
-    // Share that they scatter on, about the straight way: each yarn some, as hairs do in [Zinke2008].
+    // Share that they scatter on, over the half space of the light: each yarn some, as hairs do in [Zinke2008].
     spread: vec3f,
-    // Yarns in the way.
-    yarns: f32,
 }
 
 fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, tube: Tube, position: vec3f) -> Passing {
@@ -116,25 +104,7 @@ fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, t
         // Through air it is spread as well, so that all of the way counts.
         spread = blocked * max(pow(through, vec3f(yarns_above)) - pow(yarn.through_circle, yarns_above), vec3f(0.0));
     }
-    return Passing(shadow.open + blocked * between_fibers, spread, yarns_above);
-}
-
-// Of the light that yarns scatter on as cosⁿ of the angle to the straight way, n = `exponent` for one: where this sample's comes from.
-struct SpreadLight {
-    direction: vec3f,
-    // Irradiance on planes that face that direction, mean over them, per irradiance on one that faces the light.
-    fluence: f32,
-}
-
-// `aside`: even over the sphere, another one for each sample.
-fn spread_light(exponent: f32, yarns_above: f32, direction: vec3f, aside: vec3f) -> SpreadLight {
-    // Each yarn turns it by as much again, until nothing is left of where it came from.
-    let cosine = max(pow((exponent + 1.0) / (exponent + 2.0), yarns_above), 2.0 / 3.0);
-    let n = (2.0 * cosine - 1.0) / (1.0 - cosine);
-    let along = dot(aside, direction);
-    let cos_turn = pow(0.5 + 0.5 * along, 1.0 / n);
-    let across = normalize(aside - direction * along + vec3f(0.0, 0.0, 1e-12));
-    return SpreadLight(direction * cos_turn + across * sqrt(max(1.0 - cos_turn * cos_turn, 0.0)), (n + 1.0) / n);
+    return Passing(shadow.open + blocked * between_fibers, spread);
 }
 
 // Radiance by what it comes from: light scattered once, by lobe, and more than once; and ambient light, however often it is scattered.
@@ -169,12 +139,17 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     var albedo: YarnAlbedo;
     // Light that yarns lit alike send each other.
     var gain: vec3f;
+    // Light scattered more than once comes from the directions in which fibers are. A point that is seen has fewer of them than others there,
+    // but as many behind, where light comes from that goes straight on.
+    var hidden: vec3f;
     if MULTIPLE {
         transport = transport_point(draws[draw].transport, section, surface.tube.tangent, view);
         albedo = yarn_albedo(draws[draw].transport);
+        let around_it = (1.0 - own_sky) / max(1.0 - self_occlusion(yarn, section), 0.01);
+        hidden = (even_lobes.around * around_it + even_lobes.through) / max(even, vec3f(1e-6));
         gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * albedo.albedo);
     }
-    let around = look_around(yarn, surface, seen, transport, even);
+    let around = look_around(yarn, surface, seen, transport, hidden, even);
     var shaded: Shaded;
     for (var i = 0u; i < frame.light_count; i++) {
         let light = lights[i];
@@ -192,18 +167,15 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
         shaded.arriving += luminance(straight);
         shaded.shining += luminance(incident.irradiance);
         if MULTIPLE {
-            let aside = sky_direction(frame.sky_view);
-            let spread = incident.irradiance * passing.spread;
-            // R and Lambert's term are wide, or as narrow as glints: a half space stands for the cone.
-            shaded.scattered += even_lobes.around * spread * (0.5 * own.width / PI);
-            let onward = spread_light(albedo.exponent, passing.yarns, incident.direction, aside);
-            let transmitted = transmitted_once(material, surface, onward.direction, view);
-            shaded.scattered += transmitted * spread * (onward.fluence * self_shadow(yarn, seen, onward.direction));
+            // TT takes in what other yarns scatter as far as that half space is behind the fiber.
+            let behind = 0.5 - 0.5 * dot(section_direction(section, incident.direction).unit, seen.view);
+            shaded.scattered += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own.width / PI);
             // Fibers send each other light over about a yarn's radius, which blurs the shadows in it [Khungurn2017 §5.3.2]: another place for each sample.
+            let aside = sky_direction(frame.sky_view);
             let place = surface.position + surface.tube.radius * (aside - incident.direction * dot(aside, incident.direction));
             let blurred = passing_light(yarn, albedo.through, light, incident, surface.tube, place);
             let arriving = incident.irradiance * (blurred.straight + blurred.spread);
-            shaded.scattered += transport_radiance(transport, section, incident.direction) * arriving;
+            shaded.scattered += transport_radiance(transport, section, incident.direction) * arriving * hidden;
             // Neighbours have the irradiance of this yarn.
             for (var k = 0u; k < frame.sky_view_count; k++) {
                 let cosine = -dot(sky_direction(frame.sky_view + k), incident.direction);
@@ -214,7 +186,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
     var sky = (even_lobes.around * own_sky + even_lobes.through * own_behind) * around.open;
     if MULTIPLE {
-        sky += around.sky + even_lobes.diffuse * (around.facing - own_sky * around.open);
+        sky += around.sky;
         for (var k = 0u; k < frame.sky_view_count; k++) {
             sky += around.yarns[k] * albedo.albedo * (CLOTH_OPEN * gain);
         }

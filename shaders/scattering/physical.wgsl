@@ -18,25 +18,16 @@ struct Reflected {
     diffuse: vec3f,
 }
 
-fn physical_fresnel(material: Material, angles: FiberAngles) -> vec3f {
-    return material.color_r + (1.0 - material.color_r) * schlick(angles.cos_theta_i);
-}
-
-// The transmission of `physical_lobes`.
-fn physical_transmission(material: Material, normalizers: Normalizers, angles: FiberAngles) -> vec3f {
+// Radiance per irradiance on a plane that faces the light.
+fn physical_lobes(material: Material, normalizers: Normalizers, angles: FiberAngles, cos_normal_light: f32) -> Reflected {
+    let f = material.color_r + (1.0 - material.color_r) * schlick(angles.cos_theta_i);
+    let m_r = gaussian(angles.cone_offset, material.beta_r) / normalizers.integral_r;
     let m_tt = gaussian(angles.cone_offset, material.beta_tt) / normalizers.integral_tt;
     let n_tt = von_mises(angles.cos_phi, material.gamma_tt, material.azimuthal_tt);
     let fiber = (1.0 - material.diffuse_weight) * angles.cos_theta_i;
-    return (1.0 - physical_fresnel(material, angles)) * material.color_tt * (m_tt * n_tt * fiber);
-}
-
-// Radiance per irradiance on a plane that faces the light.
-fn physical_lobes(material: Material, normalizers: Normalizers, angles: FiberAngles, cos_normal_light: f32) -> Reflected {
-    let m_r = gaussian(angles.cone_offset, material.beta_r) / normalizers.integral_r;
-    let fiber = (1.0 - material.diffuse_weight) * angles.cos_theta_i;
     return Reflected(
-        physical_fresnel(material, angles) * (AZIMUTHAL_UNIFORM * m_r * fiber),
-        physical_transmission(material, normalizers, angles),
+        f * (AZIMUTHAL_UNIFORM * m_r * fiber),
+        (1.0 - f) * material.color_tt * (m_tt * n_tt * fiber),
         material.diffuse * (material.diffuse_weight / PI * max(cos_normal_light, 0.0)),
     );
 }
@@ -45,8 +36,6 @@ fn physical_lobes(material: Material, normalizers: Normalizers, angles: FiberAng
 struct EvenLight {
     around: vec3f,
     through: vec3f,
-    // Of `around`, Lambert's term.
-    diffuse: vec3f,
 }
 
 // `factors`: reflect, reflect at grazing angles, transmit.
@@ -54,5 +43,5 @@ fn physical_ambient(material: Material, factors: vec3f) -> EvenLight {
     let reflected = material.color_r * factors.x + (1.0 - material.color_r) * factors.y;
     let transmitted = (1.0 - material.color_r) * material.color_tt * factors.z;
     let w = material.diffuse_weight;
-    return EvenLight(reflected * (1.0 - w) + material.diffuse * w, transmitted * (1.0 - w), material.diffuse * w);
+    return EvenLight(reflected * (1.0 - w) + material.diffuse * w, transmitted * (1.0 - w));
 }

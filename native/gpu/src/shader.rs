@@ -362,8 +362,6 @@ mod tests {
             ("TRANSPORT_LIGHT_LONGITUDES", size.light_longitudes as f64),
             ("TRANSPORT_LIGHT_AZIMUTHS", size.light_azimuths as f64),
             ("TRANSPORT_RINGS", size.rings as f64),
-            ("TRANSPORT_CONES", size.cones as f64),
-            ("TRANSPORT_TURNS", size.turns as f64),
             ("TRANSPORT_VIEW_LONGITUDES", size.view_longitudes as f64),
             ("TRANSPORT_VIEW_AZIMUTHS", size.view_azimuths as f64),
             ("TRANSPORT_ANGLES", size.sides as f64),

@@ -31,10 +31,6 @@ fn pack_shared_exponent(color: [f32; 3]) -> u32 {
     code(color[0]) | (code(color[1]) << 9) | (code(color[2]) << 18) | (((exponent + BIAS) as u32) << 27)
 }
 
-/// Of light that leaves a yarn on the side away from the light: that of an even surface, and a cone 11° wide.
-const LEAST_THROUGH_COSINE: f64 = 2.0 / 3.0;
-const MOST_THROUGH_COSINE: f64 = 0.98;
-
 /// Tables one after the other.
 #[derive(Default)]
 pub(crate) struct Words(pub Vec<u32>);
@@ -160,13 +156,10 @@ impl TableBuffer {
         });
     }
 
-    /// Offset of a transport table: albedo, through, its exponent, then the tables of [`Transport`].
+    /// Offset of a transport table: albedo, through, then the three tables of [`Transport`].
     pub fn add_transport(&mut self, transport: &Transport) -> u32 {
         let colors = [transport.albedo, transport.through].map(|color| color.as_vec3().to_array());
-        // Light from a yarn with cosⁿ of the way straight on has a mean cosine of (n + 1) / (n + 2).
-        let cosine = transport.through_cosine.clamp(LEAST_THROUGH_COSINE, MOST_THROUGH_COSINE);
-        let exponent = (2.0 * cosine - 1.0) / (1.0 - cosine);
-        let first = self.words.append(colors.into_iter().flatten().chain([exponent as f32]));
+        let first = self.words.append(colors.into_iter().flatten());
         self.words.append_words(
             transport
                 .sides
@@ -375,8 +368,6 @@ mod tests {
             ("LIGHT_LONGITUDES", size.light_longitudes),
             ("LIGHT_AZIMUTHS", size.light_azimuths),
             ("RINGS", size.rings),
-            ("CONES", size.cones),
-            ("TURNS", size.turns),
             ("VIEW_LONGITUDES", size.view_longitudes),
             ("VIEW_AZIMUTHS", size.view_azimuths),
             ("ANGLES", size.sides),

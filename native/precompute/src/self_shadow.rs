@@ -56,7 +56,7 @@ const SEEN_SKY_SIZE: usize = 32;
 pub const SHARED_OVER_WIDTH: f64 = 2.0 / 3.0;
 
 /// Depth that a ray to a light has in common with the ray to the viewer, `angle` radians from it; at most `most`. `unit` is σ r/2.
-pub(crate) fn in_common(unit: f64, angle: f64, most: f64) -> f64 {
+fn in_common(unit: f64, angle: f64, most: f64) -> f64 {
     let half = 0.5 * angle;
     let shared = unit * (half.tan().max(1e-6).recip() - 0.5 * PI + half);
     let most = most.max(1e-9);

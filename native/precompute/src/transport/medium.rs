@@ -5,26 +5,16 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 use lisle_core::sampling::Random;
 
-use crate::self_shadow::in_common;
-use crate::{SHARED_OVER_WIDTH, SectionDensity, SelfShadow};
+use crate::SectionDensity;
 
 /// Steps across the section at which the density is bounded.
 const STEPS: u32 = 256;
 
 pub(super) struct Medium {
     density: SectionDensity,
-    shadow: SelfShadow,
     /// Bounds of the extinction within the plies' circle, and of the fuzz around it, per outer radius.
     most_inside: f64,
     most_outside: f64,
-}
-
-/// The way by which a photon came to a fiber.
-pub(super) struct Way {
-    /// Back along it, in the section.
-    back: DVec2,
-    /// Optical depth of it.
-    depth: f64,
 }
 
 /// Where a photon meets a fiber.
@@ -36,8 +26,7 @@ pub(super) struct Collision {
 
 impl Medium {
     pub fn new(density: SectionDensity) -> Self {
-        let shadow = SelfShadow::new(&density);
-        let mut medium = Self { density, shadow, most_inside: 0.0, most_outside: 0.0 };
+        let mut medium = Self { density, most_inside: 0.0, most_outside: 0.0 };
         let cell = 2.0 * medium.reach() / f64::from(STEPS);
         for k in 0..STEPS * STEPS {
             let at = |i: u32| (f64::from(i) + 0.5) * cell - medium.reach();
@@ -81,65 +70,34 @@ impl Medium {
             .map(move |(fibers, slope)| (width * fibers * direction.cross(slope.extend(1.0)).length(), slope))
     }
 
-    /// Share of the fibers at q that a viewer in that direction of the section sees.
-    pub fn seen(&self, q: DVec2, toward_viewer: DVec2) -> f64 {
-        (-self.shadow.at(toward_viewer.to_angle(), q)).exp()
-    }
-
-    /// Fibers that a photon meets per length of its way at q.
-    fn extinction(&self, q: DVec2, direction: DVec3) -> f64 {
-        self.extinctions(q, direction).map(|(sigma, _)| sigma).sum()
-    }
-
-    /// Depth of the way that is free since no fiber contains a photon's start: the part of a fiber's section, half of which lies on either side.
-    ///
-    /// Along a ray that meets a fiber under an angle γ that way is πr / (4 sin γ) on average, so that its depth does not depend on the direction.
-    fn free_depth(&self, q: DVec2) -> f64 {
-        let share_of_volume = PI * self.density.fiber_radius.powi(2) * self.length_density(q);
-        // Fibers of a yarn that anyone could make have room beside each other.
-        0.5 * share_of_volume.min(1.0)
-    }
-
-    /// The same of a photon that goes there, whose way to q is known to be free.
-    pub fn seen_after(&self, q: DVec2, toward_viewer: DVec2, came: &Way) -> f64 {
-        self.seen(q, toward_viewer) * self.depth_in_common(q, toward_viewer, came).exp()
-    }
-
-    /// The way from one place to another in a direction; from outside the yarn if it begins nowhere.
-    pub fn way(&self, from: Option<DVec2>, to: DVec2, direction: DVec3) -> Way {
-        let back = -direction.truncate();
-        let depth = |q: DVec2| self.shadow.at(back.to_angle(), q);
-        Way { back, depth: (depth(to) - from.map_or(0.0, depth)).max(0.0) }
-    }
-
-    /// Depth of the beginning of a photon's way on that has no fibers since there were none on the way by which it came ([`SelfShadow::over_width_of_seen`]).
-    fn depth_in_common(&self, q: DVec2, across: DVec2, came: &Way) -> f64 {
-        let angle = across.angle_to(came.back).abs();
-        let most = came.depth.min(self.shadow.at(across.to_angle(), q));
-        in_common(0.5 * self.density.extinction(q) * self.density.fiber_radius, angle, SHARED_OVER_WIDTH * most)
+    /// Depth of the way of π/4 of a fiber's radius that begins at q; backwards that ends there.
+    fn depth_beside(&self, q: DVec2, direction: DVec3, backwards: bool) -> f64 {
+        let across = direction.truncate();
+        let size = across.length().max(1e-9);
+        let way = 0.25 * PI * self.density.fiber_radius;
+        let middle = q + across * (0.5 * way / size * if backwards { -1.0 } else { 1.0 });
+        // The way in space is longer than that in the section.
+        self.extinctions(middle, direction).map(|(sigma, _)| sigma).sum::<f64>() * (way / size).min(1.0)
     }
 
     /// The next fiber on the way of a photon, and the photon's weight there; `None` with its weight if it leaves the yarn. By null collisions
-    /// [Woodcock1965]. `came`: how it came to the fiber that it leaves, if it leaves one.
+    /// [Woodcock1965].
     ///
-    /// A ray *from* a fiber towards the light meets none that contain its start ([`crate::SelfShadow`]). A photon goes the other way. On its way from fiber a
-    /// to b, the last stretch before b is free, not the first after a; one
+    /// A ray *from* a fiber towards the light meets none that contain its start: none within π/4 of a fiber's radius, on average ([`crate::SelfShadow`]).
+    /// A photon goes the other way. On its way from fiber a to b, the last stretch before b is free, not the first after a; one
     /// that leaves the yarn has none. Here the first stretch is skipped, since all of it lies among fibers, and weights make up for the difference.
     pub fn next(
         &self,
         from: DVec2,
         direction: DVec3,
-        came: Option<&Way>,
+        leaves_fiber: bool,
         random: &mut Random,
     ) -> (f64, Option<Collision>) {
         let across = direction.truncate();
         let (mut q, mut log_weight) = (from, 0.0);
-        if let Some(came) = came {
-            let sigma = self.extinction(from, direction).max(1e-12);
-            let free = (self.free_depth(from) / sigma).min(self.reach());
-            let common = (self.depth_in_common(from, across, came) / sigma).min(self.reach());
-            q += across * (free + common);
-            log_weight = -self.extinction(from + across * (0.5 * free), direction) * free;
+        if leaves_fiber {
+            q += across.normalize_or_zero() * (0.25 * PI * self.density.fiber_radius);
+            log_weight = -self.depth_beside(from, direction, false);
         }
         loop {
             let inside = q.length_squared() < 1.0;
@@ -159,8 +117,7 @@ impl Medium {
             for (sigma, slope) in self.extinctions(q, direction) {
                 left -= sigma;
                 if left < 0.0 {
-                    let before = q - across.normalize_or_zero() * (0.125 * PI * self.density.fiber_radius);
-                    let weight = (log_weight + self.free_depth(before)).exp();
+                    let weight = (log_weight + self.depth_beside(q, direction, true)).exp();
                     return (weight, Some(Collision { q, tangent: slope.extend(1.0).normalize() }));
                 }
             }
@@ -185,6 +142,6 @@ fn way_to_circle(q: DVec2, across: DVec2, radius: f64) -> Option<(f64, f64)> {
     let a = across.length_squared();
     let b = q.dot(across);
     let root = b * b - a * (q.length_squared() - radius * radius);
-    // Along the yarn, nothing is ever met: such photons count as having left, a set of measure 0.
+    // Along the yarn, nothing is ever left: such photons are lost, a set of measure 0.
     (a > 1e-18 && root > 0.0).then(|| ((-b - root.sqrt()) / a, (-b + root.sqrt()) / a))
 }

@@ -12,7 +12,7 @@ use lisle_core::yarn::Yarn;
 use super::{Transport, TransportSize};
 
 /// To be raised whenever the same key gives another table.
-const VERSION: u32 = 5;
+const VERSION: u32 = 1;
 
 /// Files beyond this number go, those used longest ago first: about 300 MB.
 const MOST_FILES: usize = 200;
@@ -93,30 +93,24 @@ impl TransportStore {
 
 /// A table's numbers, in the order of its fields. Albedo and through in single precision, as the renderer has them.
 fn values(transport: &Transport) -> impl Iterator<Item = f32> {
-    let Transport { radiance, ambient, sides, albedo, through, through_cosine } = transport;
-    let colors = [albedo, through, &DVec3::splat(*through_cosine)].map(|color| color.as_vec3().to_array());
+    let Transport { radiance, ambient, sides, albedo, through } = transport;
+    let colors = [albedo, through].map(|color| color.as_vec3().to_array());
     let tables = radiance.iter().chain(ambient).chain(sides).copied();
     tables.chain(colors).flatten()
 }
 
 fn transport(bytes: &[u8]) -> Option<Transport> {
     let (numbers, rest) = bytes.as_chunks::<4>();
-    let size = TransportSize::ALL;
     let (colors, rest_numbers) = numbers.as_chunks::<3>();
     let mut colors = colors.iter().map(|color| color.map(f32::from_le_bytes));
+    let size = TransportSize::ALL;
+    let per_light = size.cells() / size.light_longitudes;
     let mut take = |count: usize| -> Vec<[f32; 3]> { colors.by_ref().take(count).collect() };
-    let (radiance, ambient, sides, last) = (take(size.cells()), take(size.ambient_cells()), take(size.sides), take(4));
-    let is_whole = rest.is_empty() && rest_numbers.is_empty();
-    let [albedo, through, [through_cosine, ..]] = *last.as_slice() else { return None };
+    let (radiance, ambient, sides, last) = (take(size.cells()), take(per_light), take(size.sides), take(3));
+    let is_whole = rest.is_empty() && rest_numbers.is_empty() && sides.len() == size.sides;
+    let [albedo, through] = *last.as_slice() else { return None };
     let color = |values: [f32; 3]| DVec3::from(values.map(f64::from));
-    is_whole.then(|| Transport {
-        radiance,
-        ambient,
-        sides,
-        albedo: color(albedo),
-        through: color(through),
-        through_cosine: f64::from(through_cosine),
-    })
+    is_whole.then(|| Transport { radiance, ambient, sides, albedo: color(albedo), through: color(through) })
 }
 
 #[cfg(test)]
@@ -148,7 +142,6 @@ mod tests {
         assert_eq!((&kept.radiance, &kept.ambient, &kept.sides), (&made.radiance, &made.ambient, &made.sides));
         assert_eq!(kept.albedo.as_vec3(), made.albedo.as_vec3());
         assert_eq!(kept.through.as_vec3(), made.through.as_vec3());
-        assert_eq!(kept.through_cosine as f32, made.through_cosine as f32);
         assert!(store.load(&yarn, &material, 3_000).is_none(), "other photons");
         let other = Material { beta_r_rad: material.beta_r_rad * (1.0 + 1e-15), ..material };
         assert!(store.load(&yarn, &other, 2_000).is_none(), "another material");
