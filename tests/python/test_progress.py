@@ -96,7 +96,9 @@ def test_two_threads_share_a_renderer(draw):
 
 
 ENDLESS = """
+import signal
 import lisle
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored where a shell has put the tests in the background
 swatch = lisle.knit_swatch(courses=6, wales=6)
 renderer = lisle.Renderer()
 print("ready", flush=True)
