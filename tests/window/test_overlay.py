@@ -7,8 +7,7 @@ import pytest
 from looking import IMPOSSIBLE, at, screen, settled, srgb, world
 
 PICTURE = """
-view, = painter()._views.values()
-np.save({path!r}, view.picture.combined)
+np.save({path!r}, next(iter(painter()._views.values())).picture.combined)
 """
 
 
