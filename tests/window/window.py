@@ -1,6 +1,7 @@
 """Blender in a window on a virtual X display, driven from outside and looked at pixel by pixel."""
 
 import json
+import re
 import shutil
 import struct
 import subprocess
@@ -63,14 +64,20 @@ class Window:
         end = time.monotonic() + timeout_s
         while not answer.exists():
             if self.process.poll() is not None:
-                raise RuntimeError(f"Blender ended with {self.process.returncode}:\n{self.log.read_text()}")
+                raise RuntimeError(f"Blender ended with {self.process.returncode}:\n{self.last_words()}")
             if time.monotonic() > end:
-                raise TimeoutError(f"no answer after {timeout_s} s:\n{self.log.read_text()}")
+                raise TimeoutError(f"no answer after {timeout_s} s:\n{self.last_words()}")
             time.sleep(0.005)
         answer = json.loads(answer.read_text())
         if "error" in answer:
             raise RuntimeError(answer["error"])
         return answer["answer"]
+
+    def last_words(self):
+        """The end of what Blender has printed, and where it crashed."""
+        said = self.log.read_text(errors="replace")
+        reports = [Path(path) for path in re.findall(r"^Writing: (.*\.crash\.txt)$", said, re.MULTILINE)]
+        return said[-2000:] + "".join(report.read_text(errors="replace") for report in reports if report.exists())
 
     def _send(self, code):
         """Hands over a command, whole or not at all; returns the path where its answer will be."""
@@ -96,7 +103,7 @@ class Window:
             if answer:
                 return answer
             time.sleep(0.02)
-        raise TimeoutError(f"not true after {timeout_s} s: {code}\n{self.log.read_text()}")
+        raise TimeoutError(f"not true after {timeout_s} s: {code}\n{self.last_words()}")
 
     def close(self):
         """Quits as a user does; returns the exit code."""
