@@ -39,8 +39,8 @@ struct Frame {
     plane_ambient: u32,
     plane_shadow: u32,
     // Where among the vector's words a frame writes: two, or the same again up to the end.
-    neighbour_word: u32,
-    neighbour_word_end: u32,
+    frame_word: u32,
+    frame_word_end: u32,
     lod_pixels: f32,
     light_count: u32,
     occlusion_table: u32,
@@ -220,6 +220,11 @@ struct Sky {
     strength: f32,
     padding: f32,
 }
+
+// What the vector pass keeps of a point before its places in frames, words: segment + 1, or 0; the parameter along it; and the offset on a yarn
+// or, for a mesh, the render-space position.
+const VECTOR_PARAMETER: u32 = 1u;
+const VECTOR_PLACE: u32 = 2u;
 
 const NONE: u32 = 0xffffffffu;
 const MESH_SHADED: u32 = 0u;

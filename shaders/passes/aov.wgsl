@@ -107,19 +107,14 @@ fn add_aovs(index: u32, draw: u32, surface: Surface, shaded: Shaded) {
     }
     if frame.plane_vector != NO_PLANE {
         aov_planes[aov_word(frame.plane_vector, index)] = surface.segment + 1u;
-        set_aov(frame.plane_vector + 1u, index, surface.t);
+        set_aov(frame.plane_vector + VECTOR_PARAMETER, index, surface.t);
         for (var i = 0u; i < 3u; i++) {
-            set_aov(frame.plane_vector + 2u + i, index, place.offset[i]);
-        }
-        let here = to_pixel(frame.pixel_from_render, surface.position).xy;
-        for (var word = 5u; word < 11u; word += 2u) {
-            set_aov(frame.plane_vector + word, index, here.x);
-            set_aov(frame.plane_vector + word + 1u, index, here.y);
+            set_aov(frame.plane_vector + VECTOR_PLACE + i, index, place.offset[i]);
         }
     }
 }
 
-// Of a point of a mesh: what a yarn's place would say stays 0.
+// Of a point of a mesh: what a yarn's coordinates would say stays 0.
 fn add_mesh_aovs(index: u32, draw: u32, position: vec3f, color: vec3f, shaded: Shaded) {
     add_light(index, shaded);
     if frame.plane_matte != NO_PLANE {
@@ -128,7 +123,13 @@ fn add_mesh_aovs(index: u32, draw: u32, position: vec3f, color: vec3f, shaded: S
     if frame.plane_albedo != NO_PLANE {
         add_aov(frame.plane_albedo, index, color);
     }
-    if frame.first == 1u && frame.plane_position != NO_PLANE {
+    if frame.first == 0u {
+        return;
+    }
+    if frame.plane_position != NO_PLANE {
         add_aov(frame.plane_position, index, position);
+    }
+    if frame.plane_vector != NO_PLANE {
+        add_aov(frame.plane_vector + VECTOR_PLACE, index, position);
     }
 }

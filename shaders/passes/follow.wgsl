@@ -1,5 +1,5 @@
-// How it works: one thread a pixel finds where the point that it shows is in another frame: the draws, knots and camera that are bound are
-// those of that frame. What is not seen there stays where it is.
+// How it works: one thread a pixel finds where the yarn's point that it shows is in a frame: the draws, knots and camera that are bound are
+// those of that frame. What is not seen there stays where it was written to before. Meshes are followed in native/gpu/src/frame/read_back.rs.
 
 @group(0) @binding(40) var<storage, read_write> aov_planes: array<u32>;
 
@@ -16,15 +16,18 @@ fn follow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
         return;
     }
     let segment = aov_planes[first] - 1u;
-    var place: array<f32, 4>;
-    for (var i = 0u; i < 4u; i++) {
-        place[i] = bitcast<f32>(aov_planes[first + (i + 1u) * pixels]);
+    let t = bitcast<f32>(aov_planes[first + VECTOR_PARAMETER * pixels]);
+    var place: vec3f;
+    for (var i = 0u; i < 3u; i++) {
+        place[i] = bitcast<f32>(aov_planes[first + (VECTOR_PLACE + i) * pixels]);
     }
-    let p = yarn_point(segment_at(find_draw(segment), segment), place[0]);
-    let position = p.position + p.radius * (p.normal * place[1] + p.binormal * place[2] + p.tangent * place[3]);
+    let p = yarn_point(segment_at(find_draw(segment), segment), t);
+    let position = p.position + p.radius * (p.normal * place.x + p.binormal * place.y + p.tangent * place.z);
     let there = to_pixel(frame.pixel_from_render, position);
     if there.w > frame.near {
-        aov_planes[first + frame.neighbour_word * pixels] = bitcast<u32>(there.x);
-        aov_planes[first + (frame.neighbour_word + 1u) * pixels] = bitcast<u32>(there.y);
+        for (var word = frame.frame_word; word < frame.frame_word_end; word += 2u) {
+            aov_planes[first + word * pixels] = bitcast<u32>(there.x);
+            aov_planes[first + (word + 1u) * pixels] = bitcast<u32>(there.y);
+        }
     }
 }

@@ -149,6 +149,13 @@ impl View {
         DMat4::from_cols(x, y, w, z).transpose().as_mat4()
     }
 
+    /// Where a point of the world is on the frame, pixels from the top left; `None` if it is no farther than the near plane.
+    pub fn pixel(&self, world: DVec3) -> Option<[f64; 2]> {
+        let point = (world - self.origin).extend(1.0);
+        let [x, y, w, z] = self.rows.map(|row| row.dot(point));
+        (z > self.near).then(|| [x / w, y / w])
+    }
+
     /// Nearest and farthest distance along the view axis within a box, cut at the near plane.
     pub fn depth_range(&self, bounds: &Bounds) -> (f64, f64) {
         let depths = bounds.corners().map(|c| self.rows[3].dot(c.extend(1.0)));

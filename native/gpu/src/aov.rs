@@ -10,7 +10,8 @@ pub enum Aov {
     /// Along the yarn and around it, at the pixel's centre: length coordinate, and the angle from the yarn's normal in turns, 0 to 1.
     Uv,
     /// How far what is at the pixel's centre moves on the picture, pixels, X to the right, Y up: where it was in the frame before relative to
-    /// where it is, then where it is relative to where it will be. Needs [`crate::Exposure::neighbours`].
+    /// where it is, then where it is relative to where it will be. Meshes move with their transforms, as if they kept their shapes. Needs
+    /// [`crate::Exposure::neighbours`].
     Vector,
     /// `Labels::index` at the pixel's centre.
     ObjectIndex,
@@ -95,10 +96,12 @@ impl Aov {
 /// No such plane.
 pub(crate) const NO_PLANE: u32 = u32::MAX;
 
-/// Words of a pixel's place on its yarn, and of where it is on three pictures: `shaders/passes/aov.wgsl`.
-const VECTOR_WORDS: u32 = 11;
-/// The first of a neighbour's two words, from the vector's first plane on.
-pub(crate) const NEIGHBOUR_WORDS: [u32; 2] = [7, 9];
+/// Words of a pixel's place on its yarn or mesh, and of where it is on three pictures: `shaders/passes/aov.wgsl`.
+pub(crate) const VECTOR_WORDS: u32 = 11;
+/// The first of the three words of a point of a mesh, render space, from the vector's first plane on.
+pub(crate) const VECTOR_PLACE: u32 = 2;
+/// The first of the two words of this frame, of the one before and of the one after, from there on.
+pub(crate) const FRAME_WORDS: [u32; 3] = [5, 7, 9];
 
 /// Where the shaders write: planes of one word a pixel, one after the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,13 +173,17 @@ impl Tile<'_> {
         (0..cryptomatte::SLOTS as u32).map(slot).take_while(|(draw, _)| *draw != 0)
     }
 
-    /// Where a pixel's point was or will be, as differences on the picture.
-    pub fn vector(&self, pixel: usize) -> [f32; 4] {
-        let plane = self.planes.vector;
-        let [here, before, after]: [[f32; 2]; 3] = [5, 7, 9].map(|word| self.values(plane + word, pixel));
-        // Y of pixel space runs down.
-        [before[0] - here[0], here[1] - before[1], here[0] - after[0], after[1] - here[1]]
+    /// Where a yarn's point is in the three frames, pixels.
+    pub fn yarn_pixels(&self, pixel: usize) -> [[f64; 2]; 3] {
+        FRAME_WORDS.map(|word| self.values::<2>(self.planes.vector + word, pixel).map(f64::from))
     }
+}
+
+/// Where a point was or will be, as differences on the picture: from where it is in this frame, the one before and the one after, pixels.
+pub(crate) fn vector([here, before, after]: [[f64; 2]; 3]) -> [f32; 4] {
+    // Y of pixel space runs down.
+    [before[0] - here[0], here[1] - before[1], here[0] - after[0], after[1] - here[1]]
+        .map(|difference| difference as f32)
 }
 
 #[cfg(test)]
@@ -189,6 +196,6 @@ mod tests {
         assert_eq!((none.count, none.position, none.matte), (0, NO_PLANE, NO_PLANE));
         let some = Planes::new(&[Aov::CryptoMaterial, Aov::Uv, Aov::CryptoObject]);
         assert_eq!((some.uv, some.matte, some.count), (0, 2, 2 + 2 * cryptomatte::SLOTS as u32));
-        assert_eq!(NEIGHBOUR_WORDS[1] + 2, VECTOR_WORDS);
+        assert_eq!((VECTOR_PLACE + 3, FRAME_WORDS[2] + 2), (FRAME_WORDS[0], VECTOR_WORDS));
     }
 }

@@ -1,12 +1,12 @@
 //! What moves while the shutter is open, and where things are in the frames before and after.
 
-use glam::DMat4;
+use glam::{DMat4, DVec3};
 use lisle_core::scene::between;
 
 use crate::device::Gpu;
-use crate::upload::{Draws, Place, SceneBuffers, Shape, empty_storage};
+use crate::upload::{Draws, ObjectParts, Place, SceneBuffers, Shape, empty_storage};
 use crate::view::View;
-use crate::{Error, Object, Scene};
+use crate::{Error, Mesh, Object, Scene};
 
 /// A scene at one or several times.
 ///
@@ -29,7 +29,6 @@ impl Exposure {
 }
 
 /// What is seen at one time, and from where.
-#[derive(Clone)]
 pub(crate) struct Moment {
     pub view: View,
     pub draws: Draws,
@@ -38,7 +37,7 @@ pub(crate) struct Moment {
 /// The steps, ready to be drawn at any time between them.
 pub(crate) struct Motion<'a> {
     steps: &'a [Scene],
-    which: &'a [usize],
+    parts: &'a [ObjectParts],
     size: [u32; 2],
     /// Of each step; none if no curve changes its shape.
     pub shapes: Vec<Shape>,
@@ -49,6 +48,8 @@ pub(crate) struct Neighbour {
     pub moment: Moment,
     pub shape: Shape,
     pub draws: wgpu::Buffer,
+    /// From where each mesh is to where it is in that frame, world space; none if the frames have not as many.
+    mesh_moves: Vec<DMat4>,
 }
 
 /// Fails unless the objects of a scene are those of another, moved.
@@ -69,11 +70,11 @@ fn check(scene: &Scene, other: &Scene, when: &str) -> Result<(), Error> {
 }
 
 impl<'a> Motion<'a> {
-    /// `which` is what [`SceneBuffers::update`] gave for the first step, that `buffers` hold.
+    /// `parts` are what [`SceneBuffers::update`] gave for the first step, that `buffers` hold.
     pub fn new(
         gpu: &Gpu,
         steps: &'a [Scene],
-        which: &'a [usize],
+        parts: &'a [ObjectParts],
         size: [u32; 2],
         buffers: &SceneBuffers,
     ) -> Result<Self, Error> {
@@ -83,9 +84,9 @@ impl<'a> Motion<'a> {
             let pairs = || steps[0].objects.iter().zip(&step.objects);
             deforms |= pairs().any(|(a, b)| !std::ptr::eq(a.yarns.points(), b.yarns.points()));
         }
-        let shape = |step: &Scene| buffers.shape_of(gpu, step, which);
+        let shape = |step: &Scene| buffers.shape_of(gpu, step, parts);
         let shapes = if deforms { steps.iter().map(shape).collect::<Result<_, _>>()? } else { Vec::new() };
-        Ok(Self { steps, which, size, shapes })
+        Ok(Self { steps, parts, size, shapes })
     }
 
     pub fn is_moving(&self) -> bool {
@@ -102,7 +103,7 @@ impl<'a> Motion<'a> {
     /// What is seen at a time.
     pub fn at(&self, buffers: &SceneBuffers, time: f64) -> Result<Moment, Error> {
         if !self.is_moving() {
-            return Moment::new(buffers, &self.steps[0], self.which, self.size, &buffers.shape.places);
+            return Moment::new(buffers, &self.steps[0], self.parts, self.size, &buffers.shape.places);
         }
         let (first, share) = self.step(time);
         let (a, b) = (&self.steps[first], &self.steps[first + 1]);
@@ -114,7 +115,7 @@ impl<'a> Motion<'a> {
             Some([a, b]) => a.places.iter().zip(&b.places).map(|(a, b)| a.between(b, share)).collect(),
             _ => buffers.shape.places.clone(),
         };
-        let draws = buffers.draws(&self.steps[0], self.which, view.origin, &transforms, &places)?;
+        let draws = buffers.draws(&self.steps[0], self.parts, view.origin, &transforms, &places)?;
         Ok(Moment { view, draws })
     }
 }
@@ -123,13 +124,13 @@ impl Moment {
     fn new(
         buffers: &SceneBuffers,
         scene: &Scene,
-        which: &[usize],
+        parts: &[ObjectParts],
         size: [u32; 2],
         places: &[Place],
     ) -> Result<Self, Error> {
         let view = View::new(&scene.camera, size)?;
         let transforms: Vec<DMat4> = scene.objects.iter().map(|object| object.world_from_object).collect();
-        let draws = buffers.draws(scene, which, view.origin, &transforms, places)?;
+        let draws = buffers.draws(scene, parts, view.origin, &transforms, places)?;
         Ok(Self { view, draws })
     }
 }
@@ -141,16 +142,28 @@ impl Neighbour {
         scene: &Scene,
         other: &Scene,
         when: &str,
-        which: &[usize],
+        parts: &[ObjectParts],
         size: [u32; 2],
         buffers: &SceneBuffers,
     ) -> Result<Self, Error> {
         check(scene, other, when)?;
-        let shape = buffers.shape_of(gpu, other, which)?;
-        let moment = Moment::new(buffers, other, which, size, &shape.places)?;
+        let shape = buffers.shape_of(gpu, other, parts)?;
+        let moment = Moment::new(buffers, other, parts, size, &shape.places)?;
         let items = &moment.draws.items;
         let draws = empty_storage(gpu, "instances in another frame", size_of_val(&items[..]) as u64)?;
         gpu.queue.write_buffer(&draws, 0, bytemuck::cast_slice(items));
-        Ok(Self { moment, shape, draws })
+        let moved = |(here, there): (&Mesh, &Mesh)| {
+            let matrix = there.world_from_object * here.world_from_object.inverse();
+            if matrix.is_finite() { matrix } else { DMat4::IDENTITY }
+        };
+        let pairs = scene.meshes.iter().zip(&other.meshes);
+        let mesh_moves = if scene.meshes.len() == other.meshes.len() { pairs.map(moved).collect() } else { Vec::new() };
+        Ok(Self { moment, shape, draws, mesh_moves })
+    }
+
+    /// Where a point of a mesh is on the picture of that frame, pixels; `None` if it is not before the camera.
+    pub fn mesh_pixel(&self, mesh: usize, world: DVec3) -> Option<[f64; 2]> {
+        let there = self.mesh_moves.get(mesh).map_or(world, |matrix| matrix.transform_point3(world));
+        self.moment.view.pixel(there)
     }
 }

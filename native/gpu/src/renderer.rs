@@ -196,15 +196,15 @@ impl Drawing {
             }
         };
         listener.check()?;
-        let (mut buffers, which) = SceneBuffers::update(gpu, self.scene.take(), scene, &transports, tables)?;
+        let (mut buffers, parts) = SceneBuffers::update(gpu, self.scene.take(), scene, &transports, tables)?;
         let sky = SkyBuffers::update(gpu, self.sky.take(), scene.environment.as_ref())?;
         let meshes = MeshBuffers::update(gpu, self.meshes.take(), scene)?;
         if mesh_pipelines.is_none() && !meshes.is_empty() {
             *mesh_pipelines = Some(MeshPipelines::new(gpu)?);
         }
-        let motion = Motion::new(gpu, &exposure.steps, &which, settings.size, &buffers)?;
+        let motion = Motion::new(gpu, &exposure.steps, &parts, settings.size, &buffers)?;
         let neighbours = exposure.neighbours.as_ref().filter(|_| planes.vector != NO_PLANE).map(|[before, after]| {
-            let neighbour = |other, when| Neighbour::new(gpu, scene, other, when, &which, settings.size, &buffers);
+            let neighbour = |other, when| Neighbour::new(gpu, scene, other, when, &parts, settings.size, &buffers);
             Ok::<_, Error>([neighbour(before, "frame before")?, neighbour(after, "frame after")?])
         });
         let neighbours = neighbours.transpose()?;

@@ -348,10 +348,21 @@ mod tests {
 
     /// Constants that are written both here and in WGSL.
     fn shared_constants() -> Vec<(&'static str, f64)> {
-        use crate::frame;
+        use crate::{aov, cryptomatte, frame, layout};
         use lisle_precompute::{HALF_WAY, SHARED_OVER_WIDTH, TURNS, Transport, TransportSize};
         let size = TransportSize::ALL;
         vec![
+            ("KNOT_BEGINS_SEGMENT", layout::KNOT_BEGINS_SEGMENT.into()),
+            ("LIGHT_SUN", layout::LIGHT_SUN.into()),
+            ("LIGHT_POINT", layout::LIGHT_POINT.into()),
+            ("LIGHT_AREA", layout::LIGHT_AREA.into()),
+            ("NONE", layout::NONE.into()),
+            ("MESH_SHADED", layout::MESH_SHADED.into()),
+            ("MESH_SHADOW_CATCHER", layout::MESH_SHADOW_CATCHER.into()),
+            ("MESH_HOLDOUT", layout::MESH_HOLDOUT.into()),
+            ("NO_PLANE", aov::NO_PLANE.into()),
+            ("MATTE_SLOTS", cryptomatte::SLOTS as f64),
+            ("VECTOR_PLACE", aov::VECTOR_PLACE.into()),
             ("BLOCK", frame::BLOCK.into()),
             ("LANES", frame::LANES.into()),
             ("ROW", frame::ROW.into()),

@@ -92,7 +92,6 @@ struct UploadedTransport {
 }
 
 /// The instances to draw.
-#[derive(Clone)]
 pub(crate) struct Draws {
     pub items: Vec<layout::Draw>,
     /// Padded knots, each of which may begin a segment; the shaders number segments by them.
@@ -147,21 +146,36 @@ struct Set<'a> {
     yarn: &'a Arc<Yarn>,
 }
 
-/// The distinct sets of a scene, and which of them each object is; `kinds` takes the kinds of yarn.
-fn distinct<'a>(scene: &'a Scene, kinds: &mut Vec<Arc<Yarn>>) -> (Vec<Set<'a>>, Vec<usize>) {
+/// What an object is made of, by number: its set of curves, kind of yarn and material; and the offset of its table of multiple scattering.
+#[derive(Clone, Copy)]
+pub(crate) struct ObjectParts {
+    set: usize,
+    yarn: u32,
+    material: u32,
+    transport: u32,
+}
+
+/// The distinct sets of a scene, and what each object is made of, yet without tables; `kinds` and `materials` take those that there are.
+fn distinct<'a>(
+    scene: &'a Scene,
+    kinds: &mut Vec<Arc<Yarn>>,
+    materials: &mut Vec<Arc<Material>>,
+) -> (Vec<Set<'a>>, Vec<ObjectParts>) {
     let mut sets = Vec::new();
     let mut known = HashMap::<(*const Yarns, usize), usize>::new();
-    let which = scene
+    let parts = scene
         .objects
         .iter()
-        .map(|Object { yarns, yarn, .. }| {
-            *known.entry((Arc::as_ptr(yarns), intern(kinds, yarn))).or_insert_with(|| {
+        .map(|Object { yarns, yarn, material, .. }| {
+            let (kind, material) = (intern(kinds, yarn), intern(materials, material));
+            let set = *known.entry((Arc::as_ptr(yarns), kind)).or_insert_with(|| {
                 sets.push(Set { yarns, yarn });
                 sets.len() - 1
-            })
+            });
+            ObjectParts { set, yarn: kind as u32, material: material as u32, transport: 0 }
         })
         .collect();
-    (sets, which)
+    (sets, parts)
 }
 
 impl SceneBuffers {
@@ -172,12 +186,9 @@ impl SceneBuffers {
         scene: &Scene,
         transports: &[SceneTransport],
         cache: &mut TableCache,
-    ) -> Result<(Self, Vec<usize>), Error> {
+    ) -> Result<(Self, Vec<ObjectParts>), Error> {
         let (mut kinds, mut materials) = (Vec::new(), Vec::new());
-        let (sets, which) = distinct(scene, &mut kinds);
-        for object in &scene.objects {
-            intern(&mut materials, &object.material);
-        }
+        let (sets, mut parts) = distinct(scene, &mut kinds, &mut materials);
         let known = previous.filter(|p| {
             p.uploads.len() == sets.len()
                 && p.uploads.iter().zip(&sets).all(|(u, set)| same_rest(&u.yarns, set.yarns) && u.yarn == *set.yarn)
@@ -216,7 +227,11 @@ impl SceneBuffers {
             (buffers.kinds, buffers.materials) = (kinds, materials);
         }
         cache.forget(buffers.kinds.len(), transports.len());
-        Ok((buffers, which))
+        for part in &mut parts {
+            let transport = buffers.transports.iter().find(|t| (t.yarn, t.material) == (part.yarn, part.material));
+            part.transport = transport.map_or(0, |transport| transport.offset);
+        }
+        Ok((buffers, parts))
     }
 
     fn upload(gpu: &Gpu, sets: &[Set]) -> Result<Self, Error> {
@@ -278,11 +293,12 @@ impl SceneBuffers {
         }
     }
 
-    /// The same curves at another time, by a scene whose objects are those of the one that `which` belongs to.
-    pub fn shape_of(&self, gpu: &Gpu, scene: &Scene, which: &[usize]) -> Result<Shape, Error> {
+    /// The same curves at another time, by a scene whose objects are those of the one that `parts` belong to.
+    pub fn shape_of(&self, gpu: &Gpu, scene: &Scene, parts: &[ObjectParts]) -> Result<Shape, Error> {
         let (mut positions, mut frames, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for (set, upload) in self.uploads.iter().enumerate() {
-            let of_set = || which.iter().zip(&scene.objects).filter(|(w, _)| **w == set).map(|(_, object)| object);
+            let of_set =
+                || parts.iter().zip(&scene.objects).filter(|(part, _)| part.set == set).map(|(_, object)| object);
             let first = of_set().next().expect("every set is an object's");
             if let Some(other) = of_set().find(|other| !std::ptr::eq(other.yarns.points(), first.yarns.points())) {
                 let reason = format!("it shares its yarns with \"{}\" at one time and not at another", first.name);
@@ -313,12 +329,12 @@ impl SceneBuffers {
         self.yarns.size() + self.material_data.size() + self.tables.size()
     }
 
-    /// The scene's objects as draws of these buffers, with such transforms to the world and places of the sets; `which` is what
+    /// The scene's objects as draws of these buffers, with such transforms to the world and places of the sets; `parts` are what
     /// [`Self::update`] gave.
     pub fn draws(
         &self,
         scene: &Scene,
-        which: &[usize],
+        parts: &[ObjectParts],
         origin: DVec3,
         transforms: &[DMat4],
         places: &[Place],
@@ -332,8 +348,8 @@ impl SceneBuffers {
             radius_max: 0.0,
             slenderness: 0.0,
         };
-        for ((object, transform), set) in scene.objects.iter().zip(transforms).zip(which) {
-            let (upload, place) = (&self.uploads[*set], &places[*set]);
+        for ((object, transform), part) in scene.objects.iter().zip(transforms).zip(parts) {
+            let (upload, place) = (&self.uploads[part.set], &places[part.set]);
             let render_from_object =
                 DMat4::from_translation(-origin) * *transform * DMat4::from_translation(place.center);
             let determinant = render_from_object.determinant();
@@ -341,8 +357,6 @@ impl SceneBuffers {
             let row = |i: usize| -> Vec4 { render_from_object.row(i).as_vec4() };
             let count = upload.knots.len() as u32;
             let radius_max = upload.knots.radius_max * scale;
-            let (yarn, material) = (position(&self.kinds, &object.yarn), position(&self.materials, &object.material));
-            let transport = self.transports.iter().find(|t| (t.yarn, t.material) == (yarn, material));
             draws.items.push(layout::Draw {
                 render_from_object_x: row(0),
                 render_from_object_y: row(1),
@@ -350,9 +364,9 @@ impl SceneBuffers {
                 first_segment: draws.segment_count,
                 first_knot: upload.first_knot,
                 knot_count: count,
-                yarn,
-                material,
-                transport: transport.map_or(0, |transport| transport.offset),
+                yarn: part.yarn,
+                material: part.material,
+                transport: part.transport,
                 holdout: u32::from(object.is_holdout),
                 seed: hash_combine(0x00b1_ec70, object.id),
                 radius_max: radius_max as f32,

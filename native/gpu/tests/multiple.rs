@@ -147,6 +147,21 @@ fn tables_are_made_once_and_kept_on_disk() {
 }
 
 #[test]
+fn a_hole_in_the_picture_needs_no_tables() {
+    let asks_for_tables = |is_holdout| {
+        let object = Object { is_holdout, ..yarns("rayon-1", lambert(0.6), 1) };
+        let mut tables = false;
+        let image = another_renderer().render(&seen(object), &Settings { samples: 1, ..settings() }, &mut |progress| {
+            tables |= matches!(progress, Progress::Tables { .. });
+            ControlFlow::Continue(())
+        });
+        assert!(image.is_ok());
+        tables
+    };
+    assert_eq!([false, true].map(asks_for_tables), [true, false]);
+}
+
+#[test]
 fn making_tables_can_be_cancelled() {
     let scene = Scene { lights: vec![sun([0.0, 0.0, -1.0], 1.0)], ..seen(yarns("rayon-1", lambert(0.7), 1)) };
     let settings = Settings { samples: 1, ..settings() };

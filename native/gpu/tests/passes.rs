@@ -4,7 +4,10 @@ mod support;
 
 use glam::{DMat4, DVec3, DVec4, Vec4Swizzles};
 use lisle_core::scattering::Material;
-use lisle_gpu::{Aov, Camera, Exposure, Image, Labels, Object, Scene, Settings, Shading, cryptomatte};
+use lisle_gpu::{
+    Aov, Camera, Exposure, Image, Labels, Lens, Mesh, MeshKind, Object, Scene, Settings, Shading, Triangles,
+    cryptomatte,
+};
 use support::{
     curves, draw, exact, expose, looking, measure, object, orthographic, perspective, preset, scene, yarns_of,
 };
@@ -192,6 +195,79 @@ fn a_winding_yarn_that_turns_is_followed() {
         }
     }
     assert!(worst > 0.0 && worst < 0.05, "{worst} pixels");
+}
+
+#[test]
+fn what_stands_still_has_no_vector_through_any_lens_and_sample() {
+    let lens = Lens { aperture_radius: 0.2, focus_distance: 3.0, blades: 0, rotation_rad: 0.0, ratio: 1.0 };
+    let still = scene(vec![wave()], Camera { lens: Some(lens), ..front() });
+    let exposure = Exposure { neighbours: Some([still.clone(), still.clone()]), ..Exposure::still(still.clone()) };
+    for first_sample in [0, 5] {
+        let image = expose(&exposure, &Settings { first_sample, ..settings(&[Aov::Vector]) });
+        assert!(is_there(&image).filter(|there| *there).count() > 500);
+        let most = values(&image, Aov::Vector).flatten().fold(0.0_f32, |most, v| most.max(v.abs()));
+        assert!(most < 1e-3, "from sample {first_sample} on: {most} pixels");
+    }
+}
+
+#[test]
+fn another_material_in_the_frames_beside_changes_nothing() {
+    let here = scene(vec![wave()], front());
+    let mut other = here.clone();
+    other.objects[0].material = std::sync::Arc::new(Material::preset("silk").expect("preset"));
+    assert_ne!(other.objects[0].material, here.objects[0].material);
+    let image = |beside: &Scene| {
+        let exposure = Exposure { steps: vec![here.clone()], neighbours: Some([beside.clone(), beside.clone()]) };
+        expose(&exposure, &settings(&[Aov::Vector]))
+    };
+    let [same, apart] = [image(&here), image(&other)];
+    assert_eq!(values(&same, Aov::Vector).collect::<Vec<_>>(), values(&apart, Aov::Vector).collect::<Vec<_>>());
+    assert_eq!(same.combined, apart.combined);
+}
+
+#[test]
+fn meshes_are_followed() {
+    let corners = vec![[-1.0, 0.5, -1.0], [1.0, 0.5, -1.0], [1.0, 0.8, 1.0], [-1.0, 0.8, 1.0]];
+    let mesh = Mesh {
+        name: "wall".into(),
+        id: 7,
+        labels: Labels::default(),
+        triangles: std::sync::Arc::new(Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]], None).expect("a square")),
+        base_color: glam::Vec3::ONE,
+        kind: MeshKind::Shaded,
+        world_from_object: DMat4::from_translation(DVec3::new(0.1, 0.0, 0.2)),
+    };
+    let wave = wave();
+    // Mesh and camera both move.
+    let at = |time: f64| {
+        let turned = mesh.world_from_object * DMat4::from_rotation_y(0.1 * time);
+        let shift = DMat4::from_translation(DVec3::new(0.05 * time, 0.1 * time, -0.03 * time));
+        let camera = Camera { world_from_camera: shift * front().world_from_camera, ..front() };
+        let meshes = vec![Mesh { world_from_object: turned, ..mesh.clone() }];
+        Scene { meshes, ..scene(vec![wave.clone()], camera) }
+    };
+    let [before, here, after] = [-1.0, 0.0, 1.5].map(at);
+    let exposure = Exposure { steps: vec![here.clone()], neighbours: Some([before.clone(), after.clone()]) };
+    for first_sample in [0, 3] {
+        let image = expose(&exposure, &Settings { first_sample, ..settings(&[Aov::Vector, Aov::Position]) });
+        let (mut worst, mut most, mut seen) = (0.0_f64, 0.0_f64, 0);
+        for ((vector, position), id) in
+            values(&image, Aov::Vector).zip(values(&image, Aov::Position)).zip(&image.object_id)
+        {
+            if *id == 7 {
+                let point = DVec3::new(position[0].into(), position[1].into(), position[2].into());
+                let own = here.meshes[0].world_from_object.inverse() * point.extend(1.0);
+                let [a, b, c] = [&before, &here, &after]
+                    .map(|scene| on_picture(&scene.camera, (scene.meshes[0].world_from_object * own).xyz()));
+                let expected = [a.x - b.x, b.y - a.y, b.x - c.x, c.y - b.y];
+                for (found, expected) in vector.iter().zip(expected) {
+                    (worst, most) = (worst.max((f64::from(*found) - expected).abs()), most.max(expected.abs()));
+                }
+                seen += 1;
+            }
+        }
+        assert!(seen > 1000 && most > 2.0 && worst < 0.01, "{seen} pixels move by {most}, off by {worst}");
+    }
 }
 
 fn labelled(name: &str, material: &str, index: u32, at: f64) -> Object {

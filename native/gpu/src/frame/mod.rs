@@ -9,11 +9,11 @@ pub(crate) use buffers::FrameBuffers;
 
 use std::time::{Duration, Instant};
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use self::threads::{core_parts, fold, nearest_w, parts, parts_within};
 use self::tiles::{TileLimits, tiles};
-use crate::aov::{NEIGHBOUR_WORDS, Planes};
+use crate::aov::{FRAME_WORDS, Planes, VECTOR_WORDS};
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
 use crate::layout::{self, NONE};
@@ -27,6 +27,7 @@ use crate::sampling::{PixelFilter, Use, pair, sphere};
 use crate::shader::{Film, Pass, Resolve};
 use crate::timing::Timer;
 use crate::upload::SceneBuffers;
+use crate::view::View;
 use crate::waiting::Listener;
 use crate::{Environment, Error, Image, Occlusion, Progress, Scene, Settings, Statistics};
 
@@ -108,8 +109,8 @@ pub(crate) struct Recorder<'a> {
     /// What the sample sees.
     moment: Moment,
     mesh_places: MeshPlaces,
-    /// Of the render space of the first sample.
-    first_origin: DVec3,
+    /// That of the first sample, without jitter and lens.
+    first_view: View,
 }
 
 impl<'a> Recorder<'a> {
@@ -179,17 +180,17 @@ impl<'a> Recorder<'a> {
             timer: Timer::new(gpu),
             static_lights: false,
             fiber_segments: 0,
-            first_origin: moment.view.origin,
-            moment: moment.clone(),
+            first_view: moment.view,
+            moment,
             mesh_places: MeshPlaces::new(),
         };
-        recorder.see(moment);
+        recorder.show();
         Ok(recorder)
     }
 
-    /// From now on samples see that.
-    fn see(&mut self, moment: Moment) {
-        let Moment { view, draws } = &moment;
+    /// From now on samples see the moment.
+    fn show(&mut self) {
+        let Moment { view, draws } = &self.moment;
         let (depth_min, depth_max) = if draws.bounds.is_empty() { (0.0, 1.0) } else { view.depth_range(&draws.bounds) };
         self.gpu.queue.write_buffer(&self.frame.draws, 0, bytemuck::cast_slice(&draws.items));
         self.mesh_places = self.input.meshes.place(self.input.scene, view.origin);
@@ -203,13 +204,13 @@ impl<'a> Recorder<'a> {
             least_w: if view.orthographic { 1.0 } else { view.near as f32 },
             ..self.uniform
         };
-        self.moment = moment;
     }
 
     /// Moves knots and camera to the time of a sample.
     fn move_to(&mut self, time: f64) -> Result<(), Error> {
         let FrameInput { motion, buffers, .. } = *self.input;
-        self.see(motion.at(buffers, time)?);
+        self.moment = motion.at(buffers, time)?;
+        self.show();
         let (step, share) = motion.step(time);
         if let Some([earlier, later]) = motion.shapes.get(step..step + 2) {
             let knots = buffers.knot_count();
@@ -342,7 +343,7 @@ impl<'a> Recorder<'a> {
         }
         let view = self.moment.view;
         if index == 0 {
-            self.first_origin = view.origin;
+            self.first_view = view;
         }
         let jitter = if number == 0 { [0.0; 2] } else { self.filter.offset(pair(number, Use::Pixel)) };
         let seen = match &view.lens {
@@ -504,23 +505,32 @@ impl<'a> Recorder<'a> {
         self.gpu.submit(encoder);
     }
 
-    /// Where the points of the first sample are in the frames before and after.
-    fn follow(&mut self, neighbours: &'a [Neighbour; 2], pixels: u32) {
+    /// Where the yarns' points of the first sample are in this frame and in those before and after, all without jitter and lens.
+    fn follow(&mut self, [before, after]: &'a [Neighbour; 2], pixels: u32) {
         let kept = self.uniform;
-        for (neighbour, word) in neighbours.iter().zip(NEIGHBOUR_WORDS) {
-            let view = &neighbour.moment.view;
-            self.uniform.pixel_from_render = view.pixel_from_render([0.0; 2]);
-            self.uniform.near = view.near as f32;
-            self.uniform.neighbour_word = word;
-            self.write_uniform();
-            let mut encoder = self.encoder();
+        let [here_word, before_word, after_word] = FRAME_WORDS;
+        // What is seen is before the camera; it stays there where it is not in another frame.
+        let view = self.first_view;
+        self.follow_to(&view, f32::MIN, [here_word, VECTOR_WORDS], &[], pixels);
+        for (neighbour, words) in [(before, [before_word, after_word]), (after, [after_word, VECTOR_WORDS])] {
             let bound = [(1, &neighbour.draws), (3, &neighbour.shape.positions), (4, &neighbour.shape.frames)];
-            let (x, y) = fold(pixels.div_ceil(LANES));
-            self.record_with(&mut encoder, Pass::Follow, &bound, |pass| pass.dispatch_workgroups(x, y, 1));
-            self.timer.resolve(&mut encoder);
-            self.gpu.submit(encoder);
+            let view = &neighbour.moment.view;
+            self.follow_to(view, view.near as f32, words, &bound, pixels);
         }
         self.uniform = kept;
+    }
+
+    /// The same in one frame; `words` are the first that it writes, and the end.
+    fn follow_to(&mut self, view: &View, near: f32, words: [u32; 2], bound: &[(u32, &wgpu::Buffer)], pixels: u32) {
+        self.uniform.pixel_from_render = view.pixel_from_render([0.0; 2]);
+        self.uniform.near = near;
+        [self.uniform.frame_word, self.uniform.frame_word_end] = words;
+        self.write_uniform();
+        let mut encoder = self.encoder();
+        let (x, y) = fold(pixels.div_ceil(LANES));
+        self.record_with(&mut encoder, Pass::Follow, bound, |pass| pass.dispatch_workgroups(x, y, 1));
+        self.timer.resolve(&mut encoder);
+        self.gpu.submit(encoder);
     }
 
     fn record(

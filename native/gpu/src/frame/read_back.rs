@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::Recorder;
+use crate::aov::NO_PLANE;
 use crate::{Aov, Error, Image, Labels, Scene, aov, cryptomatte};
 
 impl Recorder<'_> {
@@ -56,6 +57,23 @@ impl Recorder<'_> {
             .into()
     }
 
+    /// How a pixel's point moves on the picture: a yarn's as the shaders have followed it, a mesh's with its transform.
+    fn vector(&self, planes: &aov::Tile, pixel: usize, draw: Option<usize>) -> [f32; 4] {
+        let mesh = draw.and_then(|draw| draw.checked_sub(self.input.scene.objects.len()));
+        let (Some(mesh), Some([before, after])) = (mesh, self.input.neighbours) else {
+            return aov::vector(planes.yarn_pixels(pixel));
+        };
+        let place = Vec3::from(planes.values::<3>(planes.planes.vector + aov::VECTOR_PLACE, pixel));
+        let world = self.first_view.origin + place.as_dvec3();
+        self.first_view.pixel(world).map_or([0.0; 4], |here| {
+            aov::vector([
+                here,
+                before.mesh_pixel(mesh, world).unwrap_or(here),
+                after.mesh_pixel(mesh, world).unwrap_or(here),
+            ])
+        })
+    }
+
     pub(super) fn read_tile(
         &self,
         tile: [u32; 4],
@@ -78,7 +96,7 @@ impl Recorder<'_> {
             }
         };
         let planes = aov::Tile { planes: self.input.planes, words: &words, pixels };
-        let ids = self.matte_ids();
+        let ids = if self.input.planes.matte == NO_PLANE { [const { Vec::new() }; 2] } else { self.matte_ids() };
         let scale = 1.0 / samples as f32;
         let direction = |v: [f32; 4]| {
             // Background samples pull the mean towards zero; its direction is that of the surface.
@@ -92,7 +110,8 @@ impl Recorder<'_> {
                 image.depth[to] = normal[from][3];
                 image.normal[to] = direction(normal[from]);
                 image.tangent[to] = direction(tangent[from]);
-                let object = (tangent[from][3] as usize).checked_sub(1).map(|draw| self.labels(draw));
+                let draw = (tangent[from][3] as usize).checked_sub(1);
+                let object = draw.map(|draw| self.labels(draw));
                 image.object_id[to] = object.map_or(0, |(id, _)| id);
                 for (aov, values) in &mut image.aovs {
                     let matte = |ids: &[f32]| {
@@ -104,12 +123,12 @@ impl Recorder<'_> {
                     match aov {
                         Aov::Position if object.is_some() => {
                             let render = planes.values::<3>(planes.planes.position, from);
-                            let world = self.first_origin + Vec3::from(render).as_dvec3();
+                            let world = self.first_view.origin + Vec3::from(render).as_dvec3();
                             value.copy_from_slice(&world.as_vec3().to_array());
                         }
                         Aov::Position => {}
                         Aov::Uv => value.copy_from_slice(&planes.values::<2>(planes.planes.uv, from)),
-                        Aov::Vector => value.copy_from_slice(&planes.vector(from)),
+                        Aov::Vector => value.copy_from_slice(&self.vector(&planes, from, draw)),
                         Aov::ObjectIndex => value[0] = object.map_or(0.0, |(_, labels)| labels.index as f32),
                         Aov::MaterialIndex => value[0] = object.map_or(0.0, |(_, labels)| labels.material_index as f32),
                         Aov::CryptoObject => value.copy_from_slice(&matte(&ids[0])),
