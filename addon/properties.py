@@ -397,6 +397,21 @@ class LisleObjectSettings(bpy.types.PropertyGroup):
         update=_tag,
     )
 
+    is_yarn: EnumProperty(
+        name="Curves",
+        description="Whether this object's curves are drawn as yarn",
+        items=(
+            (
+                "AUTO",
+                "Automatic",
+                "Yarn, unless the curve serves another object as a path, a profile, a taper or a guide",
+                0,
+            ),
+            ("ALWAYS", "Yarn", "Yarn, whatever else the curve serves as", 1),
+            ("NEVER", "No Yarn", "Not drawn as yarn; a curve with a bevel is a mesh, as in other engines", 2),
+        ),
+        update=_tag,
+    )
     yarn_radius: yarn_radius(
         "Radius of the yarn; 0 takes the curve's own. Multiplies the point radius of legacy curves", update=_tag
     )

@@ -1,11 +1,13 @@
 """A stockinette swatch, near enough to see plies, fibers and fuzz."""
 
-import sys
+import argparse
 from pathlib import Path
 
 import lisle
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("out", nargs="?", type=Path, default=Path("out/examples"), help="folder for the pictures")
+out = parser.parse_args().out
 out.mkdir(parents=True, exist_ok=True)
 
 yarns = lisle.knit_swatch("stockinette", courses=14, wales=9)

@@ -1,7 +1,7 @@
 """A swatch that is stretched and waved. Length coordinates and rest frames are those of the first shape, so that every
 fiber stays where it is on its yarn."""
 
-import sys
+import argparse
 from math import pi
 from pathlib import Path
 
@@ -10,7 +10,9 @@ import numpy as np
 
 FRAMES = 24
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("out", nargs="?", type=Path, default=Path("out/examples"), help="folder for the pictures")
+out = parser.parse_args().out
 out.mkdir(parents=True, exist_ok=True)
 
 

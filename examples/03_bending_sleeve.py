@@ -1,12 +1,14 @@
 """A knitted sleeve on an arm that bends at the elbow."""
 
-import sys
+import argparse
 from math import cos, radians, sin
 from pathlib import Path
 
 import lisle
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("out", nargs="?", type=Path, default=Path("out/examples"), help="folder for the pictures")
+out = parser.parse_args().out
 out.mkdir(parents=True, exist_ok=True)
 
 

@@ -1,13 +1,15 @@
 """Yarn curves in a USD file, read back frame by frame. Needs usd-core."""
 
-import sys
+import argparse
 from pathlib import Path
 
 import lisle
 import numpy as np
 from pxr import Usd, UsdGeom, Vt
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("out", nargs="?", type=Path, default=Path("out/examples"), help="folder for the pictures")
+out = parser.parse_args().out
 out.mkdir(parents=True, exist_ok=True)
 path = out / "swatch.usdc"
 

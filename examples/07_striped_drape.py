@@ -1,16 +1,20 @@
 """The picture at the top of the README: a striped stockinette swatch in folds, one yarn in three colours."""
 
-import sys
+import argparse
 from math import radians, tan
 from pathlib import Path
 
 import lisle
 import numpy as np
 
-out = Path(sys.argv[1] if len(sys.argv) > 1 else "out/examples")
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("out", nargs="?", type=Path, default=Path("out/examples"), help="folder for the picture")
+parser.add_argument("size", nargs="?", default="1200x750", help="of the picture, pixels")
+parser.add_argument("samples", nargs="?", type=int, default=32)
+arguments = parser.parse_args()
+out, samples = arguments.out, arguments.samples
 out.mkdir(parents=True, exist_ok=True)
-width, height = (int(n) for n in (sys.argv[2] if len(sys.argv) > 2 else "1200x750").split("x"))
-samples = int(sys.argv[3]) if len(sys.argv) > 3 else 32
+width, height = (int(n) for n in arguments.size.split("x"))
 
 
 def look_at(eye, target, opening_deg):

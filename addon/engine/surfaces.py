@@ -18,7 +18,8 @@ class Surfaces:
         kept, meshes, pass_index_of, taken = {}, [], {}, set(taken)
         for placement in placements:
             surface = placement.surface
-            key = (surface.digest, placement.color, placement.kind)
+            label = {"material_name": placement.material_name, "material_index": placement.material_index}
+            key = (surface.digest, placement.color, placement.kind, *label.values())
             mesh = kept.get(key) or self._kept.get(key)
             if mesh is None:
                 mesh = lisle.Mesh(
@@ -28,11 +29,19 @@ class Surfaces:
                     base_color=placement.color,
                     kind=placement.kind,
                     name=placement.name,
+                    **label,
                 )
             kept[key] = mesh
             identity = free_id(placement.identity, taken)
             taken.add(identity)
             pass_index_of[identity] = placement.pass_index
-            meshes.append(mesh.at(placement.world_from_object, object_id=identity, name=placement.name))
+            meshes.append(
+                mesh.at(
+                    placement.world_from_object,
+                    object_id=identity,
+                    name=placement.name,
+                    object_index=placement.pass_index,
+                )
+            )
         self._kept = kept
         return meshes, pass_index_of

@@ -47,6 +47,13 @@ def read_legacy(obj, geometry, depsgraph):
     return replace(arrays, radii=arrays.radii * np.float32(_metres_per_radius(obj)))
 
 
+def left_out(obj):
+    """What of a legacy curve is left out, in words; None if nothing is."""
+    if obj.type == "CURVE" and (obj.data.bevel_factor_start, obj.data.bevel_factor_end) != (0.0, 1.0):
+        return "its bevel's start and end are ignored, yarn runs along the whole curve"
+    return None
+
+
 def _refuse_modifiers_of_the_tube(obj):
     for modifier in obj.modifiers:
         if modifier.show_render and not getattr(modifier, "use_apply_on_spline", False):

@@ -33,12 +33,15 @@ class MeshPlacement:
     """As that of a yarn's placement."""
     pass_index: int
     name: str
+    material_name: str
+    material_index: int
+    """Blender's."""
 
     def order(self):
         """Sorts placements the same way in every process; equal if they look the same."""
         return (
             self.identity, self.surface.digest, self.world_from_object.tobytes(), self.color, self.kind,
-            self.pass_index, self.name,
+            self.pass_index, self.name, self.material_name, self.material_index,
         )  # fmt: skip
 
 
@@ -59,10 +62,13 @@ class MeshReader:
         materials = [slot.material for slot in obj.material_slots] or [None]
         placements = []
         for index, surface in self._parts(obj):
-            color = base_color(materials[min(index, len(materials) - 1)])
+            material = materials[min(index, len(materials) - 1)]
+            label = (material.name, material.pass_index) if material is not None else ("", 0)
             identity = stable_id("mesh", obj.original.name_full, index, *instancer)
             placements.append(
-                MeshPlacement(surface, world_from_object, color, kind, identity, obj.pass_index, obj.name)
+                MeshPlacement(
+                    surface, world_from_object, base_color(material), kind, identity, obj.pass_index, obj.name, *label
+                )
             )
         return placements
 

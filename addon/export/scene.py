@@ -14,8 +14,9 @@ from ..core.curves import CurveArrays
 from ..core.pixels import stable_id
 from . import follow
 from .curves import read_curves
+from .guides import Guides
 from .instances import instancer_of
-from .legacy import read_legacy
+from .legacy import left_out, read_legacy
 from .lights import native_light
 from .materials import geometry_materials, yarn_and_material
 from .meshes import TYPES as MESH_TYPES
@@ -91,7 +92,7 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
     `note` is called with each sentence about something left out.
     """
     content = Content()
-    parts_of, reader = {}, MeshReader()
+    parts_of, reader, guides = {}, MeshReader(), Guides()
     ignored = set()
     for instance in depsgraph.object_instances:
         obj = instance.object
@@ -99,16 +100,18 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
             continue
         if obj.type == "LIGHT":
             if only is None and instance.show_self:
-                content.lights.append(native_light(lisle, obj, instance.matrix_world, note))
+                light = native_light(lisle, obj, instance.matrix_world, note)
+                content.lights += [] if light is None else [light]
             continue
         name = obj.original.name_full
         if only is not None and name not in only:
             continue
         if shows is not None and not shows((instance.parent if instance.is_instance else obj).original):
             continue
-        if only is None and obj.type in MESH_TYPES:
+        is_yarn = _may_have_curves(obj) and guides.is_yarn(obj)
+        if only is None and (obj.type in MESH_TYPES or (obj.type == "CURVE" and not is_yarn)):
             content.meshes += reader.read(instance)
-        if not _may_have_curves(obj):
+        if not is_yarn:
             if obj.type in _IGNORED_TYPES:
                 ignored.add(f"'{name}' ({obj.type.lower()})")
             continue
@@ -120,6 +123,9 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
             continue
         if name not in parts_of:
             parts_of[name] = _read_parts(lisle, obj, geometry, depsgraph)
+            sentence = left_out(obj)
+            if sentence is not None and parts_of[name]:
+                note(f"object '{obj.name}': {sentence}")
             for part, _ in parts_of[name]:
                 content.geometries[part.key] = part
         world_from_object = np.array(instance.matrix_world, dtype=np.float64)

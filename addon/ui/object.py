@@ -3,8 +3,10 @@
 
 import bpy
 
+from ..export.guides import Guides
+from ..export.legacy import left_out
 from ..export.meshes import TYPES as MESH_TYPES
-from .panel import LislePanel, YarnPanel
+from .panel import LislePanel, YarnPanel, wrapped_label
 
 
 class LISLE_OBJECT_PT_yarn(YarnPanel, bpy.types.Panel):
@@ -17,7 +19,17 @@ class LISLE_OBJECT_PT_yarn(YarnPanel, bpy.types.Panel):
         return super().poll(context) and obj is not None and obj.type in {"CURVE", "CURVES", "MESH", "POINTCLOUD"}
 
     def draw(self, context):
-        layout, settings = self.split_layout(), context.object.lisle
+        layout, obj = self.split_layout(), context.object
+        settings = obj.lisle
+        layout.prop(settings, "is_yarn")
+        use = Guides().use_of(obj)
+        if use is not None and settings.is_yarn == "AUTO":
+            wrapped_label(layout, f"No yarn: {use}", icon="INFO")
+        layout = layout.column()
+        layout.active = settings.is_yarn == "ALWAYS" or (settings.is_yarn == "AUTO" and use is None)
+        sentence = left_out(obj)
+        if sentence is not None:
+            wrapped_label(layout, sentence[0].upper() + sentence[1:], icon="INFO")
         layout.prop(settings, "yarn_radius")
         layout.prop(settings, "remeasure")
         row = layout.row(heading="Reference Frame")

@@ -57,6 +57,12 @@ def test_a_cube_is_twelve_triangles_at_its_place(lisle):
     assert area(mesh.positions, mesh.corners) == pytest.approx(24)
     np.testing.assert_array_equal(mesh.world_from_object, np.array(obj.matrix_world))
     assert (mesh.kind, mesh.base_color, mesh.name) == ("shaded", (0.8, 0.8, 0.8), "Cube")
+    assert (mesh.object_index, mesh.material_name, mesh.material_index) == (5, "", 0)
+    plain = material("Plain", (1, 1, 1, 1))
+    plain.pass_index = 4
+    obj.data.materials.append(plain)
+    (mesh,) = drawn(lisle)
+    assert (mesh.material_name, mesh.material_index) == ("Plain", 4)
 
 
 def test_modifiers_and_smooth_faces_count(lisle):
@@ -99,6 +105,7 @@ def test_each_material_is_a_mesh_of_its_base_colour(lisle):
     assert [len(mesh.corners) for mesh in meshes] == [4, 4, 4]
     assert sum(area(mesh.positions, mesh.corners) for mesh in meshes) == pytest.approx(24)
     assert len({mesh.object_id for mesh in meshes}) == 3
+    assert [mesh.material_name for mesh in meshes] == ["Linked", "", "Red"]
 
 
 def test_colours_come_past_reroutes_and_muted_nodes(lisle):

@@ -370,9 +370,45 @@ def test_a_light_that_cannot_be_drawn_is_named(lisle, monkeypatch):
         raise lisle.InputError("Sun.strength: -1 is less than 0")
 
     monkeypatch.setattr(lisle, "Sun", refuse)
-    light("SUN", energy=-1)
+    light("SUN", energy=1)
     with pytest.raises(RuntimeError, match=r"light 'Light': Sun\.strength"):
         render(lisle)
+
+
+@pytest.mark.parametrize("kind", ["SUN", "POINT", "SPOT", "AREA"])
+def test_lights_without_light_are_noted(lisle, kind):
+    import bpy
+    from lisle_blender.export.scene import collect
+
+    def collected():
+        bpy.context.view_layer.update()
+        notes = []
+        return collect(lisle, bpy.context.evaluated_depsgraph_get(), notes.append).lights, notes
+
+    obj = light(kind, energy=1)
+    assert len(collected()[0]) == 1 and not collected()[1]
+    obj.scale = (1, 1, 0) if kind != "AREA" else (0, 1, 1)
+    lights, notes = collected()
+    if kind == "POINT":
+        assert len(lights) == 1, "a point looks the same at any scale"
+    else:
+        assert not lights and "light 'Light': it is scaled to 0" in notes[0]
+    obj.scale = (1, 1, 1)
+    obj.data.energy = -1
+    lights, notes = collected()
+    assert not lights and "light 'Light': its strength is negative" in notes[0]
+    if kind == "AREA":
+        obj.data.energy, obj.data.size = 1, 0
+        lights, notes = collected()
+        assert not lights and "light 'Light': its size is 0" in notes[0]
+
+
+def test_nothing_of_scale_0_stops_a_picture(lisle):
+    scenes.curves("Yarn", scenes.line()).scale = (0, 0, 0)
+    light("AREA", energy=1).scale = (0, 0, 0)
+    light("SUN", energy=1).scale = (0, 0, 0)
+    scene = render(lisle)
+    assert not scene.entries and not scene.lights
 
 
 def test_depth_of_field_is_the_cameras(lisle):

@@ -49,6 +49,16 @@ def test_meshes_are_in_the_manifest(renderer, yarns):
     assert image["crypto_object"][24, 32, 0] == number and image["crypto_object"][24, 32, 1] == 1
 
 
+def test_labels_of_meshes_reach_their_passes(renderer, yarns):
+    table = square(z=0.5, object_index=7, material_name="Oak", material_index=9)
+    image = draw(renderer, yarns, [table], passes=["crypto_material", "object_index", "material_index"])
+    number = np.array([image.manifests["crypto_material"]["Oak"]], np.uint32).view(np.float32)[0]
+    assert image["crypto_material"][24, 32, 0] == number and image["crypto_material"][24, 32, 1] == 1
+    assert (image["object_index"][24, 32], image["material_index"][24, 32]) == (7, 9)
+    moved = table.at(table.world_from_object, object_index=8)
+    assert (moved.object_index, moved.material_name, moved.material_index) == (8, "Oak", 9)
+
+
 def test_kinds_and_colours(renderer, yarns):
     shaded = draw(renderer, yarns, [square(z=-0.5, base_color=(0.5, 0.25, 0.0))])
     np.testing.assert_allclose(shaded["combined"][30, 32], (0.4, 0.2, 0, 1), rtol=1e-3)

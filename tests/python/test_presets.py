@@ -63,3 +63,8 @@ def test_values_out_of_range_are_refused_by_name(kind, preset, field, value):
 def test_unknown_presets_are_refused_with_the_known_ones(kind):
     with pytest.raises(lisle.InputError, match=r"tweed.*cotton-1"):
         kind.preset("tweed")
+
+
+def test_angles_are_refused_in_degrees():
+    with pytest.raises(lisle.InputError, match=r"`beta_r_deg` is 95: expected an angle from 0\.0573 to 90 degrees"):
+        lisle.Material.preset("silk").replace(beta_r_deg=95)

@@ -52,6 +52,17 @@ def test_a_camera_keeps_its_matrices():
         (lambda: lisle.Area(np.zeros((4, 4))), ["Area.world_from_light", "singular"]),
         (lambda: lisle.Area(np.eye(4), size=(1, 0)), ["Area.size"]),
         (lambda: lisle.Area(np.eye(4), shape="star"), ["Area.shape", "star"]),
+        (lambda: lisle.Camera(np.eye(4), np.eye(4), (1, 1), blades="six"), ["Camera.blades", "'six'"]),
+        (lambda: lisle.Camera(np.eye(4), np.eye(4), (1, 1), blades=1.5), ["Camera.blades", "1.5"]),
+        (lambda: lisle.Environment(np.ones((1, 2, 3)), rotation="east"), ["Environment.rotation", "'east'"]),
+        (lambda: lisle.knit_swatch(7), ["pattern", "7"]),
+        (lambda: lisle.knit_swatch(courses="many"), ["courses", "'many'"]),
+        (lambda: lisle.woven_swatch(warp=2.5), ["warp", "2.5"]),
+        (lambda: lisle.sweater("all"), ["points", "'all'"]),
+        (lambda: lisle.Renderer(3), ["adapter", "3"]),
+        (lambda: lisle.Mesh([(0, 0, 0)], [(0, 0, 0)], normals="up"), ["mesh: normals", "str"]),
+        (lambda: lisle.Mesh([(0, 0, 0)], [(0, 0, 0)], object_id="first"), ["mesh: object_id", "'first'"]),
+        (lambda: lisle.Mesh([(0, 0, 0)], [(0, 0, 0)], material_index=1.5), ["mesh: material_index", "1.5"]),
     ],
 )
 def test_bad_cameras_and_lights_are_refused_by_name(make, words):
@@ -71,6 +82,8 @@ def test_what_is_added_to_a_scene_is_checked(swatch, camera):
         (dict(yarns=swatch, material=lisle.Yarn.preset("silk-1")), "back: material"),
         (dict(yarns=swatch, transform=np.eye(3)), "back: transform"),
         (dict(yarns=swatch, object_id=0), "back: object_id 0"),
+        (dict(yarns=swatch, object_id="front"), "back: object_id: expected a whole number, got 'front'"),
+        (dict(yarns=swatch, object_index=None), "back: object_index: expected a whole number, got None"),
     ]:
         with pytest.raises(lisle.InputError, match=words):
             scene.add(**arguments, name="back")
@@ -78,6 +91,10 @@ def test_what_is_added_to_a_scene_is_checked(swatch, camera):
         lisle.Scene(camera, [lisle.Sun((0, 0, -1)), "lamp"])
     with pytest.raises(lisle.InputError, match="camera"):
         lisle.Scene(None)
+    with pytest.raises(lisle.InputError, match="lights: expected a list of lights, got Sun"):
+        lisle.Scene(camera, lisle.Sun((0, 0, -1)))
+    with pytest.raises(lisle.InputError, match="meshes: expected a list of meshes, got int"):
+        lisle.Scene(camera, meshes=3)
 
 
 def test_makers_of_cloth():

@@ -1,7 +1,8 @@
 """Checks of shape and type for arguments that people write by hand, with messages that name them."""
 
 from collections.abc import Iterable, Sequence
-from typing import TypeAlias, cast
+from operator import index
+from typing import SupportsIndex, TypeAlias, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,8 @@ Vector: TypeAlias = Sequence[float] | npt.NDArray[np.floating]
 
 Triple: TypeAlias = tuple[float, float, float]
 
+T = TypeVar("T")
+
 
 def number(name: str, value: object) -> float:
     """A finite float."""
@@ -23,6 +26,45 @@ def number(name: str, value: object) -> float:
     if not np.isfinite(result):
         raise InputError(f"{name}: {result} is not finite")
     return result
+
+
+def integer(name: str, value: object) -> int:
+    """A whole number."""
+    try:
+        return index(cast(SupportsIndex, value))
+    except TypeError:
+        raise InputError(f"{name}: expected a whole number, got {value!r}") from None
+
+
+def text(name: str, value: object) -> str:
+    """A string."""
+    if not isinstance(value, str):
+        raise InputError(f"{name}: expected text, got {value!r}")
+    return value
+
+
+def object_id(name: str, value: object) -> int:
+    """The number of what is called `name` in the object-id pass."""
+    result = integer(f"{name}: object_id", value)
+    if not 0 < result < 2**32:
+        raise InputError(f"{name}: object_id {result} is not from 1 to 2³² − 1")
+    return result
+
+
+def label_index(name: str, value: object) -> int:
+    """A number in a pass of indices, which single precision holds."""
+    result = integer(name, value)
+    if not 0 <= result < 2**24:
+        raise InputError(f"{name} {result} is not from 0 to 2²⁴ − 1")
+    return result
+
+
+def items(name: str, value: Iterable[T], what: str) -> tuple[T, ...]:
+    """All of an iterable, `what` in words."""
+    try:
+        return tuple(value)
+    except TypeError:
+        raise InputError(f"{name}: expected {what}, got {type(value).__name__}") from None
 
 
 def triple(name: str, value: object) -> Triple:

@@ -65,6 +65,7 @@ class Camera:
         for name in ("focus_distance", "ratio"):
             if getattr(self, name) <= 0.0:
                 raise InputError(f"Camera.{name}: {getattr(self, name)} is not above 0")
+        object.__setattr__(self, "blades", arguments.integer("Camera.blades", self.blades))
         if not 0 <= self.blades <= MOST_BLADES:
             raise InputError(f"Camera.blades: {self.blades} is not from 0 to {MOST_BLADES}")
 

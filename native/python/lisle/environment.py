@@ -64,7 +64,10 @@ def _image(image: npt.ArrayLike) -> _native.EnvironmentImage:
 
 
 def _rotation(rotation: float | npt.ArrayLike) -> npt.NDArray[np.float64]:
-    matrix = np.array(rotation, np.float64)
+    try:
+        matrix = np.array(rotation, np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"Environment.rotation: expected an angle or a 3×3 matrix, got {rotation!r}") from None
     if matrix.ndim == 0:
         angle = arguments.number("Environment.rotation", rotation)
         c, s = np.cos(angle), np.sin(angle)

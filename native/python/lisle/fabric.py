@@ -31,7 +31,10 @@ def knit_swatch(
         yarn_radius: m.
     """
     return _native.knit_flat(
-        pattern, _count("courses", courses), _count("wales", wales), arguments.number("yarn_radius", yarn_radius)
+        arguments.text("pattern", pattern),
+        _count("courses", courses),
+        _count("wales", wales),
+        arguments.number("yarn_radius", yarn_radius),
     )
 
 
@@ -40,7 +43,10 @@ def knit_tube(
 ) -> Yarns:
     """A tube about the Z axis, standing on z = 0; each course is a closed yarn. Arguments as of `knit_swatch`."""
     return _native.knit_tube(
-        pattern, _count("courses", courses), _count("wales", wales), arguments.number("yarn_radius", yarn_radius)
+        arguments.text("pattern", pattern),
+        _count("courses", courses),
+        _count("wales", wales),
+        arguments.number("yarn_radius", yarn_radius),
     )
 
 
@@ -66,7 +72,7 @@ def knit_sleeve(
         [arguments.triple(f"centre_line, point {index}", point) for index, point in enumerate(centre_line)],
         arguments.number("radius", radius),
         arguments.direction("seam_direction", seam_direction),
-        pattern,
+        arguments.text("pattern", pattern),
         _count("courses", courses),
         _count("wales", wales),
         arguments.number("yarn_radius", yarn_radius),
@@ -128,7 +134,8 @@ def knit_on_mesh(
     if map_.shape != (*corners.shape, 2):
         raise InputError(f"uvs: expected shape {(*corners.shape, 2)}, got {map_.shape}")
     radius = arguments.number("yarn_radius", yarn_radius)
-    return MeshKnit(*_native.knit_mesh(positions, normals, corners.ravel(), map_.ravel(), pattern, radius))
+    stitches = arguments.text("pattern", pattern)
+    return MeshKnit(*_native.knit_mesh(positions, normals, corners.ravel(), map_.ravel(), stitches, radius))
 
 
 def _unit(vectors: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -139,9 +146,10 @@ def _unit(vectors: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 def sweater(points: int = 200_000) -> Yarns:
     """A sweater of at most so many control points and nearly as many; more of them mean thinner yarn."""
-    if points < 0:
-        raise InputError(f"points: {points} is less than 0")
-    return _native.sweater(int(points))
+    count = arguments.integer("points", points)
+    if count < 0:
+        raise InputError(f"points: {count} is less than 0")
+    return _native.sweater(count)
 
 
 def woven_swatch(
@@ -166,7 +174,7 @@ def woven_swatch(
             warp as weft; in satins yarns of the warp touch, and those of the weft are two diameters apart.
     """
     return _native.woven_flat(
-        weave,
+        arguments.text("weave", weave),
         _count("warp", warp),
         _count("weft", weft),
         arguments.number("yarn_radius", yarn_radius),
@@ -175,6 +183,7 @@ def woven_swatch(
 
 
 def _count(name: str, value: int) -> int:
-    if not 0 <= value < 2**32:
-        raise InputError(f"{name}: {value} is not from 1 to 2³² − 1")
-    return int(value)
+    count = arguments.integer(name, value)
+    if not 0 <= count < 2**32:
+        raise InputError(f"{name}: {count} is not from 1 to 2³² − 1")
+    return count

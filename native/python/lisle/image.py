@@ -85,10 +85,10 @@ class Image(Mapping[str, npt.NDArray[Any]]):
     | position * | (h, w, 3) f32 | world space, 0 where nothing is |
     | uv * | (h, w, 2) f32 | length coordinate along the yarn, angle around it from its normal in turns, 0 to 1 |
     | vector * | (h, w, 4) f32 | movement on the picture, see below |
-    | object_index * | (h, w) f32 | `Object.object_index` |
-    | material_index * | (h, w) f32 | `Object.material_index` |
-    | crypto_object | (h, w, 12) f32 | six pairs of id and coverage, for `Object.name`, as Cryptomatte has them |
-    | crypto_material | (h, w, 12) f32 | the same for `Object.material_name` |
+    | object_index * | (h, w) f32 | `object_index` of the object or mesh |
+    | material_index * | (h, w) f32 | `material_index`, likewise |
+    | crypto_object | (h, w, 12) f32 | six pairs of id and coverage, for names, as Cryptomatte has them |
+    | crypto_material | (h, w, 12) f32 | the same for `material_name` |
     | diffuse, specular, transmission | (h, w, 3) f32 | light of lamps scattered once, by the lobe of the fiber |
     | scattered | (h, w, 3) f32 | light of lamps scattered more than once |
     | ambient | (h, w, 3) f32 | ambient light; with those above it adds up to the colour of the yarn |
@@ -167,7 +167,8 @@ def manifests(scene: Scene, passes: Iterable[str]) -> dict[str, dict[str, int]]:
     """Names and hashes of the Cryptomatte passes among those."""
     names = {
         "crypto_object": [entry.name for entry in scene.objects] + [mesh.name for mesh in scene.meshes],
-        "crypto_material": [entry.material_name for entry in scene.objects],
+        "crypto_material": [entry.material_name for entry in scene.objects]
+        + [mesh.material_name for mesh in scene.meshes],
     }
     return {
         key: {name: _native.cryptomatte_hash(name) for name in sorted(set(names[key]))}

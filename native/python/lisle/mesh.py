@@ -26,7 +26,10 @@ class Mesh:
         kind: "shaded", "shadow-catcher" (only the shadows on it, as coverage) or "holdout" (a hole in the picture).
         transform: 4×4, object to world.
         object_id: the number in the object-id pass, above 0; in a scene, those without one count on from its yarns.
-        name: for messages.
+        name: for messages, and in the pass "crypto_object".
+        object_index: the number in the pass "object_index", which need not be unique.
+        material_name: the name in the pass "crypto_material".
+        material_index: the number in the pass "material_index".
 
     Raises:
         InputError: an array has another shape, a number is not finite, or a corner does not exist.
@@ -39,6 +42,9 @@ class Mesh:
     world_from_object: npt.NDArray[np.float64]
     object_id: int | None
     name: str
+    object_index: int
+    material_name: str
+    material_index: int
 
     def __init__(
         self,
@@ -51,8 +57,14 @@ class Mesh:
         transform: npt.ArrayLike | None = None,
         object_id: int | None = None,
         name: str = "mesh",
+        object_index: int = 0,
+        material_name: str = "",
+        material_index: int = 0,
     ) -> None:
         self.name = name
+        self.object_index = arguments.label_index(f"{name}: object_index", object_index)
+        self.material_name = str(material_name)
+        self.material_index = arguments.label_index(f"{name}: material_index", material_index)
         self.triangles = _triangles(name, positions, triangles, normals)
         self.base_color = arguments.triple(f"{name}: base_color", base_color)
         if not all(0.0 <= channel <= 1.0 for channel in self.base_color):
@@ -62,18 +74,24 @@ class Mesh:
         self.kind = kind
         self._place(np.eye(4) if transform is None else transform, object_id)
 
-    def at(self, transform: npt.ArrayLike, object_id: int | None = None, name: str | None = None) -> "Mesh":
+    def at(
+        self,
+        transform: npt.ArrayLike,
+        object_id: int | None = None,
+        name: str | None = None,
+        object_index: int | None = None,
+    ) -> "Mesh":
         """The same surface at another place; both share their geometry on the device."""
         other = copy.copy(self)
         other.name = self.name if name is None else name
+        if object_index is not None:
+            other.object_index = arguments.label_index(f"{other.name}: object_index", object_index)
         other._place(transform, object_id)
         return other
 
     def _place(self, transform: npt.ArrayLike, object_id: int | None) -> None:
         self.world_from_object = arguments.matrix(f"{self.name}: transform", transform)
-        if object_id is not None and not 0 < object_id < 2**32:
-            raise InputError(f"{self.name}: object_id {object_id} is not from 1 to 2³² − 1")
-        self.object_id = object_id
+        self.object_id = None if object_id is None else arguments.object_id(self.name, object_id)
 
     def __repr__(self) -> str:
         return f"Mesh({self.name!r}, {len(self.triangles)} triangles, {self.kind!r})"
@@ -92,7 +110,10 @@ def _triangles(
         )
     at_corners = None
     if normals is not None:
-        at_corners = np.asarray(normals, np.float32)
+        try:
+            at_corners = np.asarray(normals, np.float32)
+        except (TypeError, ValueError):
+            raise InputError(f"{name}: normals: expected an array, got {type(normals).__name__}") from None
         if at_corners.shape == points.shape and at_corners.shape != (*corners.shape, 3):
             at_corners = at_corners[corners]
         if at_corners.shape != (*corners.shape, 3):

@@ -68,8 +68,7 @@ def fibers(
     """
     if not isinstance(yarns, Yarns):
         raise InputError(f"yarns: expected lisle.Yarns, got {type(yarns).__name__}")
-    if not 0 < object_id < 2**32:
-        raise InputError(f"object_id {object_id} is not from 1 to 2³² − 1")
+    object_id = arguments.object_id("fibers", object_id)
     chord_error = arguments.number("chord_error", chord_error)
     view = None
     if camera is not None:

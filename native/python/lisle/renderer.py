@@ -31,7 +31,7 @@ class Renderer:
     """
 
     def __init__(self, adapter: str | None = None) -> None:
-        self._native = _native.Renderer(adapter)
+        self._native = _native.Renderer(None if adapter is None else arguments.text("adapter", adapter))
 
     @property
     def adapter(self) -> Adapter:
@@ -121,7 +121,7 @@ class Renderer:
         if (before is None) != (after is None):
             raise InputError("before, after: expected both or neither")
         neighbours = [moved(scene, other) for other in (before, after) if other is not None]
-        passes = tuple(passes)
+        passes = arguments.items("passes", passes, "a list of names")
         for name in passes:
             if name not in FURTHER_PASSES:
                 raise InputError(f"passes: {name!r} is none of {', '.join(FURTHER_PASSES)}")

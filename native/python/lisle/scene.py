@@ -69,7 +69,7 @@ class Scene:
         if not isinstance(camera, Camera):
             raise InputError(f"camera: expected a lisle.Camera, got {type(camera).__name__}")
         self.camera = camera
-        self.lights = tuple(lights)
+        self.lights = arguments.items("lights", lights, "a list of lights")
         for index, light in enumerate(self.lights):
             if not isinstance(light, (Sun, Point, Spot, Area)):
                 raise InputError(f"light {index}: expected a Sun, Point, Spot or Area, got {type(light).__name__}")
@@ -77,7 +77,7 @@ class Scene:
         if not isinstance(environment, Environment | None):
             raise InputError(f"environment: expected a lisle.Environment, got {type(environment).__name__}")
         self.environment = environment
-        self.meshes = tuple(meshes)
+        self.meshes = arguments.items("meshes", meshes, "a list of meshes")
         for index, mesh in enumerate(self.meshes):
             if not isinstance(mesh, Mesh):
                 raise InputError(f"mesh {index}: expected a lisle.Mesh, got {type(mesh).__name__}")
@@ -125,10 +125,9 @@ class Scene:
         """
         if not isinstance(yarns, Yarns):
             raise InputError(f"yarns: expected lisle.Yarns, got {type(yarns).__name__}")
-        number = len(self._objects) + 1 if object_id is None else int(object_id)
+        number = len(self._objects) + 1 if object_id is None else object_id
         name = (yarns.name or f"object {number}") if name is None else name
-        if not 0 < number < 2**32:
-            raise InputError(f"{name}: object_id {number} is not from 1 to 2³² − 1")
+        number = arguments.object_id(name, number)
         added = Object(
             yarns=yarns,
             yarn=_expect(name, "yarn", Yarn, yarn or Yarn.preset(DEFAULT_YARN)),
@@ -136,9 +135,9 @@ class Scene:
             world_from_object=arguments.matrix(f"{name}: transform", np.eye(4) if transform is None else transform),
             object_id=number,
             name=name,
-            object_index=_index(name, "object_index", object_index),
+            object_index=arguments.label_index(f"{name}: object_index", object_index),
             material_name=str(material_name),
-            material_index=_index(name, "material_index", material_index),
+            material_index=arguments.label_index(f"{name}: material_index", material_index),
             is_holdout=bool(holdout),
         )
         self._objects.append(added)
@@ -229,9 +228,3 @@ def _expect(name: str, argument: str, kind: type[T], value: object) -> T:
     if not isinstance(value, kind):
         raise InputError(f"{name}: {argument}: expected a lisle.{kind.__name__}, got {type(value).__name__}")
     return value
-
-
-def _index(name: str, argument: str, value: int) -> int:
-    if not 0 <= value < 2**24:
-        raise InputError(f"{name}: {argument} {value} is not from 0 to 2²⁴ − 1")
-    return int(value)

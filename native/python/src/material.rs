@@ -1,7 +1,7 @@
 //! Presets and checks of the material, which is a dataclass in Python.
 
 use glam::DVec3;
-use lisle_core::scattering::{MATERIAL_NAMES, Material};
+use lisle_core::scattering::{MATERIAL_NAMES, MIN_WIDTH_RAD, Material};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -44,11 +44,14 @@ pub fn extract_material(material: &Bound<'_, PyAny>) -> Result<Material, Failure
 pub fn check_material(material: &Bound<'_, PyAny>) -> Result<(), Failure> {
     extract_material(material)?.validate().map_err(|error| {
         // Angles are degrees on this side.
-        let (field, value, unit) = match error.parameter.strip_suffix("_rad") {
-            Some(angle) => (format!("{angle}_deg"), error.value.to_degrees(), " radians"),
-            None => (error.parameter.to_owned(), error.value, ""),
-        };
-        Failure::Input(format!("material parameter `{field}` is {value}: expected {}{unit}", error.expected))
+        Failure::Input(match error.parameter.strip_suffix("_rad") {
+            Some(angle) => format!(
+                "material parameter `{angle}_deg` is {}: expected an angle from {:.4} to 90 degrees",
+                error.value.to_degrees(),
+                MIN_WIDTH_RAD.to_degrees(),
+            ),
+            None => error.to_string(),
+        })
     })
 }
 

@@ -48,6 +48,9 @@ pub struct MeshFields {
     kind: String,
     world_from_object: Rows,
     name: String,
+    object_index: u32,
+    material_name: String,
+    material_index: u32,
 }
 
 impl MeshFields {
@@ -55,7 +58,11 @@ impl MeshFields {
     pub fn mesh(self, id: u32) -> scene::Mesh {
         scene::Mesh {
             id,
-            labels: Labels::default(),
+            labels: Labels {
+                index: self.object_index,
+                material: self.material_name,
+                material_index: self.material_index,
+            },
             triangles: self.triangles.get().0.clone(),
             base_color: Vec3::from(self.base_color),
             kind: match self.kind.as_str() {

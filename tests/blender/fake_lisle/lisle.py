@@ -166,16 +166,20 @@ class Environment:
 
 
 class Mesh:
-    def __init__(self, positions, triangles, normals=None, *, base_color, kind, name):
+    def __init__(
+        self, positions, triangles, normals=None, *, base_color, kind, name, material_name, material_index,
+    ):  # fmt: skip
         assert positions.shape[1:] == triangles.shape[1:] == (3,) and positions.dtype == np.float32
         assert normals is None or normals.shape == (*triangles.shape, 3)
         assert kind in ("shaded", "shadow-catcher", "holdout") and len(base_color) == 3
         self.positions, self.corners, self.normals = positions, triangles, normals
         self.triangles, self.base_color, self.kind, self.name = object(), base_color, kind, name
+        self.material_name, self.material_index = material_name, material_index
 
-    def at(self, transform, object_id, name):
+    def at(self, transform, object_id, name, object_index):
         placed = object.__new__(Mesh)
         placed.__dict__.update(self.__dict__, world_from_object=transform, object_id=object_id, name=name)
+        placed.object_index = object_index
         assert transform.shape == (4, 4)
         return placed
 

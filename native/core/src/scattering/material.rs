@@ -142,7 +142,7 @@ impl Material {
 }
 
 /// Narrowest lobe, radians: below it f32 no longer resolves the von Mises exponent.
-const MIN_WIDTH_RAD: f64 = 1e-3;
+pub const MIN_WIDTH_RAD: f64 = 1e-3;
 
 #[cfg(test)]
 mod tests {

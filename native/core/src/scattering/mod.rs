@@ -30,7 +30,7 @@ pub use fabrics::{FABRICS, Fabric, fabric_threads};
 pub use fiber::{FiberScattering, PhysicalFiber, ScatteringSample, SimpleFiber};
 pub use frame::{FiberFrame, distance_inside};
 pub use longitudinal::{gaussian, gaussian_integral};
-pub use material::{MATERIAL_NAMES, Material, MaterialError};
+pub use material::{MATERIAL_NAMES, MIN_WIDTH_RAD, Material, MaterialError};
 pub use multiple::cloth_color;
 pub use photon::PhotonScattering;
 pub use physical::{
