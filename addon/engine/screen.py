@@ -8,6 +8,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
+from ..core import display
 from ..core.curves import polylines
 
 _LINE_POINTS = 100_000
@@ -24,18 +25,28 @@ class Screen:
         self._depth = None
         self._lines_of = None
         self._lines = ()
+        self._transform = None
+        self._codes = None
 
     def draw(self, picture, view):
         """Draws a core.painter.Picture of a core.view.View into the bound framebuffer, over what is there."""
         self._hold(picture)
         self._draw(_picture_shader(), picture, view)
 
-    def draw_in_depth(self, picture, view):
-        """The same, hidden by what is nearer in the framebuffer's depth."""
+    def draw_in_depth(self, picture, view, transform=None):
+        """The same, hidden by what is nearer in the framebuffer's depth, as a `transform` (with `codes` and `exposure`
+        as in core.display) shows it in a framebuffer of display light."""
         if self._hold(picture) or self._depth is None:
             self._depth = texture("R32F", picture.depth)
-        shader = _deep_picture_shader()
+        shader = _deep_picture_shader(transform is not None)
         shader.bind()
+        if transform is not None:
+            if transform is not self._transform:
+                codes = np.c_[transform.codes, np.ones(len(transform.codes), np.float32)]
+                self._codes = texture("RGBA16F", codes.reshape(display.SIZE, -1, 4))
+                self._transform = transform
+            shader.uniform_sampler("codes", self._codes)
+            shader.uniform_float("scales", display.scales(transform.exposure))
         shader.uniform_sampler("depth", self._depth)
         # Distance along the view axis to clip space's z and w.
         z, w = view.clip_from_camera[2], view.clip_from_camera[3]
@@ -61,8 +72,9 @@ class Screen:
         gpu.state.blend_set("NONE")
         gpu.state.depth_test_set("NONE")
 
-    def draw_lines(self, snapshot, view, depth_test="NONE"):
-        """Draws the yarns of a snapshot.Snapshot as thin lines: what there is before there is a picture."""
+    def draw_lines(self, snapshot, view, depth_test="NONE", transform=None):
+        """Draws the yarns of a snapshot.Snapshot as thin lines: what there is before there is a picture. `transform` as
+        above."""
         if snapshot is not self._lines_of:
             self._lines = [
                 (_line_batch(*polylines(part.curves, _LINE_POINTS)), np.array(part.materials[0][1].diffuse))
@@ -77,6 +89,8 @@ class Screen:
         gpu.state.blend_set("NONE")
         for placement in snapshot.content.placements[:_LINE_PLACEMENTS]:
             batch, color = batches[placement.key]
+            if transform is not None:
+                color = display.look_up(transform.codes, transform.exposure, color) ** 2.2
             shader.uniform_float("clip_from_object", Matrix(clip_from_world @ placement.world_from_object))
             shader.uniform_float("line_color", (*color, 1.0))
             batch.draw(shader)
@@ -137,22 +151,53 @@ def _picture_shader():
     return gpu.shader.create_from_info(info)
 
 
+_TABLE = f"""
+    vec3 at_lattice(ivec3 place) {{
+        return texelFetch(codes, ivec2(place.r + {display.SIZE} * place.g, place.b), 0).rgb;
+    }}
+    vec3 display_code(vec3 light) {{
+        vec3 place = clamp(log2(1.0 + scales.x * max(light, 0.0)) * scales.y, 0.0, 1.0) * {display.SIZE - 1}.0;
+        ivec3 low = min(ivec3(place), ivec3({display.SIZE - 2}));
+        vec3 share = place - vec3(low);
+        vec3 code = vec3(0.0);
+        for (int corner = 0; corner < 8; corner++) {{
+            ivec3 offset = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+            vec3 weight = mix(1.0 - share, share, vec3(offset));
+            code += weight.r * weight.g * weight.b * at_lattice(low + offset);
+        }}
+        return code;
+    }}
+"""
+_STANDARD = """
+    vec3 display_code(vec3 light) {
+        vec3 within = clamp(light, 0.0, 1.0);
+        return mix(12.92 * within, 1.055 * pow(within, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, within));
+    }
+"""
+
+
 @functools.cache
-def _deep_picture_shader():
+def _deep_picture_shader(transformed):
     info = _picture_info()
     info.push_constant("VEC4", "depth_row")
+    if transformed:
+        info.push_constant("VEC2", "scales")
+        info.sampler(2, "FLOAT_2D", "codes")
     info.sampler(1, "FLOAT_2D", "depth")
     info.depth_write("ANY")
-    info.fragment_source("""
-        void main() {
+    info.fragment_source(f"""
+        {_TABLE if transformed else _STANDARD}
+        void main() {{
             color = texture(picture, place);
             // Not interpolated: between a yarn and the void there is no depth.
             float along = texelFetch(depth, ivec2(place * vec2(textureSize(depth, 0))), 0).r;
-            if (color.a == 0.0 || along > 1e9) {
+            if (color.a == 0.0 || along > 1e9) {{
                 discard;
-            }
+            }}
+            // Blender takes what is drawn over a picture to the power of 1 / 2.2 at the end.
+            color.rgb = pow(display_code(color.rgb / color.a), vec3(2.2)) * color.a;
             gl_FragDepth = 0.5 + 0.5 * (depth_row.x * along + depth_row.y) / (depth_row.z * along + depth_row.w);
-        }
+        }}
     """)
     return gpu.shader.create_from_info(info)
 

@@ -57,15 +57,16 @@ class Viewport:
         self._screen.draw_lines(self._snapshot, view)
         return status
 
-    def draw_over(self, view, lighting):
-        """Draws the yarns alone, hidden by what is nearer. `lighting` as in Snapshot.painter."""
+    def draw_over(self, view, lighting, transform):
+        """Draws the yarns alone, hidden by what is nearer. `lighting` as in Snapshot.painter, `transform` as in
+        Screen.draw_in_depth."""
         if view.is_empty or self._snapshot is None or not self._snapshot.content.placements:
             return
         picture, _ = self._picture(view, lighting, alone=True)
         if picture is not None:
-            self._screen.draw_in_depth(picture, view)
+            self._screen.draw_in_depth(picture, view, transform)
         else:
-            self._screen.draw_lines(self._snapshot, view, "LESS_EQUAL")
+            self._screen.draw_lines(self._snapshot, view, "LESS_EQUAL", transform)
 
     def _picture(self, view, lighting=None, alone=False):
         """The picture if there is one, and a line for the status."""

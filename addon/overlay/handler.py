@@ -8,6 +8,7 @@ from bpy.app.handlers import persistent
 
 from ..engine.viewport import Viewport
 from ..export.view import view_of
+from . import display
 from .lighting import lighting_of
 
 
@@ -49,7 +50,7 @@ def _draw():
             shown.viewport.update(space, context.evaluated_depsgraph_get())
             _say(shown.viewport.problem)
         view = view_of(context, scene)
-        shown.viewport.draw_over(view, lighting_of(space, view))
+        shown.viewport.draw_over(view, lighting_of(space, view), display.transform_of(scene, space))
     except Exception:  # Blender would go on calling it
         traceback.print_exc()
 
@@ -148,3 +149,4 @@ def unregister():
         getattr(bpy.app.handlers, name).remove(handler)
     bpy.types.SpaceView3D.draw_handler_remove(_handle, "WINDOW")
     _close_all()
+    display.forget()

@@ -68,10 +68,41 @@ def test_what_is_drawn_is_the_offscreen_picture(over, tmp_path):
     solid = picture[..., 3] > 0.999
     assert solid.mean() > 0.02
     # Not the mean: the box's lines are in front of a few pixels.
-    assert np.median(np.abs(shown[solid] - srgb(picture[solid][:, :3]))) < 2
+    assert np.median(np.abs(shown[solid] - srgb(picture[solid][:, :3]))) < 1
     mirrored = picture[:, ::-1]
     wrong = mirrored[..., 3] > 0.999
     assert np.median(np.abs(shown[wrong] - srgb(mirrored[wrong][:, :3]))) > 5
+
+
+@pytest.mark.parametrize("settings", [("AgX", "None", 0.0), ("AgX", "AgX - Punchy", 1.0), ("Standard", "None", -1.0)])
+def test_its_colours_are_those_of_the_viewports_view_transform(over, settings, tmp_path):
+    """Over Cycles it is the yarn that the engine's own Rendered shading shows, to which Blender gives its transform."""
+    names = ("view_transform", "look", "exposure")
+    over.do("".join(f"scene.view_settings.{n} = {v!r}\n" for n, v in zip(names, settings, strict=True)))
+    over.do("for name in ('Front', 'Behind'): bpy.data.objects.remove(bpy.data.objects[name])")
+    over.do("look((0.4, 0.3, 0))")
+    world(over, (0.18, 0.18, 0.18))
+    over.do("scene.render.engine = 'LISLE'; space().shading.type = 'RENDERED'")
+    expected = settled(over)
+    over.do("scene.render.engine = 'CYCLES'; scene.cycles.preview_samples = 1; scene.lisle.show_overlay = True")
+    time.sleep(1)
+    pixels = settled(over, keep=f"view-transform-{settings[0]}-{settings[2]:+.0f}")
+    over.do("import numpy as np" + PICTURE.format(path=str(tmp_path / "p.npy")))
+    solid = np.load(tmp_path / "p.npy")[::-1, :, 3] > 0.999
+    assert solid.mean() > 0.02
+    left, top, right, bottom = over.do("answer = rectangle()")
+    shown, expected = (p[top:bottom, left:right].astype(int) for p in (pixels, expected))
+    assert np.abs(shown[20, 20] - expected[20, 20]).max() <= 1, "the world behind is the same grey card"
+    difference = np.abs(shown[solid] - expected[solid])
+    assert np.percentile(difference, 90) <= 1, np.percentile(difference, (50, 90, 99))
+    # What the display's own curve would make of it is far from that.
+    over.do(
+        "display = sys.modules[PACKAGE + '.overlay.display']; transform_of = display.transform_of\n"
+        "display.transform_of = lambda *_: None; areas()[0].tag_redraw()"
+    )
+    plain = screen(over)[top:bottom, left:right].astype(int)
+    over.do("display.transform_of = transform_of")
+    assert np.median(np.abs(plain[solid] - expected[solid])) > 8
 
 
 def test_the_switch(over):
