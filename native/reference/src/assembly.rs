@@ -22,7 +22,7 @@ const MOST_LEAVES: usize = 25_000_000;
 
 /// Leaves of a part of the hierarchy, about. Parts are built one after another, so that the work can be stopped between them, and building
 /// takes memory for few at once.
-const PART: usize = 1 << 17;
+const PART: usize = 1 << 16;
 
 /// Runs are sorted into so many cells a side before they are shared out to parts.
 const CELLS: usize = 64;
@@ -163,7 +163,7 @@ impl Assembly {
             runs = by_cells(&runs, &points, low, high, &mut go_on)?;
         }
         let (mut parts, mut boxes) = (Vec::new(), Vec::new());
-        // As many parts at once as there are threads: a part takes a tenth of a second or two.
+        // As many parts at once as there are threads: a part takes some hundredths of a second.
         let starts: Vec<usize> = (0..runs.len()).step_by(PART).collect();
         for starts in starts.chunks(rayon::current_num_threads()) {
             let built: Vec<_> = starts

@@ -14,11 +14,11 @@ use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
 use crate::world::World;
 use crate::{Error, Settings};
 
-/// Time between two calls of the progress callback, about.
-const BREATH: Duration = Duration::from_millis(200);
+/// Time after which no work is begun before the progress callback has been called.
+const BREATH: Duration = Duration::from_millis(50);
 
-/// Pixels of the first chunk, and of the smallest.
-const LEAST_CHUNK: usize = 256;
+/// Neighbouring pixels that a thread takes at once.
+const BLOCK: usize = 16;
 
 /// A scene with all its fibers, ready to be drawn.
 pub struct Reference {
@@ -44,7 +44,7 @@ impl Reference {
         let region = settings.check()?;
         let view = View::new(&scene.camera, settings.size)?;
         let world = World::new(scene, settings.shading, settings.chord_error, progress)?;
-        let digest = digest(scene, settings, &world);
+        let digest = digest(scene, settings, &world, progress)?;
         let filter = PixelFilter::new(Filter::default(), settings.filter_width);
         Ok(Self { world, view, filter, settings: settings.clone(), region, digest })
     }
@@ -61,8 +61,8 @@ impl Reference {
         Film { size: [width, height], samples: self.settings.samples, digest: self.digest, done: 0, pixels }
     }
 
-    /// Adds the samples that a film lacks. `progress` is called a few times a second and can stop the work: the film then holds what is
-    /// done, and another call, in this process or another, ends in the same bits as one without the stop.
+    /// Adds the samples that a film lacks. `progress` is called some twenty times a second and can stop the work: the film then holds what
+    /// is done, and another call, in this process or another, ends in the same bits as one without the stop.
     ///
     /// # Errors
     /// [`Error::Cancelled`]; [`Error::Checkpoint`] for a film of another picture.
@@ -75,23 +75,28 @@ impl Reference {
             return Err(Error::Checkpoint("has more samples than are asked for"));
         }
         film.samples = self.settings.samples;
-        let count = film.pixels.len();
-        let mut chunk = LEAST_CHUNK;
         while !film.is_done() {
             let start = Instant::now();
-            let (sample, first) = ((film.done / count as u64) as u32, (film.done % count as u64) as usize);
-            let end = count.min(first + chunk);
-            film.pixels[first..end].par_iter_mut().enumerate().for_each(|(i, pixel)| {
-                self.add(first + i, sample, pixel);
-            });
-            film.done += (end - first) as u64;
+            self.add_while(film, || start.elapsed() < BREATH);
             if progress(film).is_break() {
                 return Err(Error::Cancelled);
             }
-            let ratio = BREATH.as_secs_f64() / start.elapsed().as_secs_f64().max(1e-6);
-            chunk = ((chunk as f64 * ratio.clamp(0.25, 4.0)) as usize).max(LEAST_CHUNK);
         }
         Ok(())
+    }
+
+    /// Adds one sample to the next pixels of a film, block by block, each begun if `go_on()`; those of one sample number at most.
+    fn add_while(&self, film: &mut Film, mut go_on: impl FnMut() -> bool + Send) {
+        let count = film.pixels.len() as u64;
+        let (sample, first) = ((film.done / count) as u32, (film.done % count) as usize);
+        let blocks = film.pixels[first..].chunks_mut(BLOCK).zip((first..).step_by(BLOCK));
+        // Blocks are begun in order, and those that are begun are finished: what is done is without gaps.
+        let begun = blocks.enumerate().take_while(|(number, _)| *number == 0 || go_on()).par_bridge();
+        let done = begun.map(|(_, (pixels, place))| {
+            pixels.iter_mut().zip(place..).for_each(|(pixel, place)| self.add(place, sample, pixel));
+            pixels.len() as u64
+        });
+        film.done += done.sum::<u64>();
     }
 
     /// Adds one sample to the pixel at a place of the region.
@@ -145,7 +150,15 @@ impl Reference {
 }
 
 /// Tells pictures apart: everything but the number of samples.
-fn digest(scene: &Scene, settings: &Settings, world: &World) -> u64 {
+fn digest(
+    scene: &Scene,
+    settings: &Settings,
+    world: &World,
+    progress: &mut dyn FnMut() -> ControlFlow<()>,
+) -> Result<u64, Error> {
+    /// Points between two calls of the progress callback.
+    const POINTS: usize = 1 << 22;
+
     let Settings { size, region, seed, bounces, shading, transparent, filter_width, .. } = settings;
     let settings = format!("{size:?} {region:?} {seed} {bounces:?} {shading:?} {transparent} {filter_width}");
     let sky = scene.environment.as_ref();
@@ -158,8 +171,55 @@ fn digest(scene: &Scene, settings: &Settings, world: &World) -> u64 {
     );
     // FNV-1a, 64 bits, over words where there are many.
     let step = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-    let hash = text.bytes().map(u64::from).fold(0xcbf2_9ce4_8422_2325, step);
+    let mut hash = text.bytes().map(u64::from).fold(0xcbf2_9ce4_8422_2325, step);
     let texels = sky.iter().flat_map(|sky| sky.image.radiance().iter().flatten());
-    let words = world.assembly.points().iter().flatten().chain(texels).map(|value| u64::from(value.to_bits()));
-    words.fold(hash, step)
+    hash = texels.map(|value| u64::from(value.to_bits())).fold(hash, step);
+    for points in world.assembly.points().chunks(POINTS) {
+        hash = points.iter().flatten().map(|value| u64::from(value.to_bits())).fold(hash, step);
+        if progress().is_break() {
+            return Err(Error::Cancelled);
+        }
+    }
+    Ok(hash)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DMat4, Vec3};
+    use lisle_core::scene::Camera;
+
+    use super::*;
+
+    fn nothing(size: [u32; 2]) -> Reference {
+        let camera = Camera {
+            world_from_camera: DMat4::IDENTITY,
+            clip_from_camera: DMat4::from_scale(glam::DVec3::new(1.0, 1.0, -0.1)),
+            lens: None,
+        };
+        let scene =
+            Scene { objects: vec![], meshes: vec![], lights: vec![], ambient: Vec3::ONE, environment: None, camera };
+        let settings = Settings { size, transparent: false, samples: 2, ..Settings::default() };
+        Reference::new(&scene, &settings, &mut || ControlFlow::Continue(())).expect("a scene")
+    }
+
+    /// However many threads there are, and whatever a block costs.
+    #[test]
+    fn once_it_is_told_to_stop_no_block_is_begun() {
+        let reference = nothing([64, 32]);
+        let mut film = reference.film();
+        for allowed in [3, 0, 40] {
+            let (before, mut asked) = (film.done, 0);
+            reference.add_while(&mut film, || {
+                asked += 1;
+                asked <= allowed
+            });
+            assert_eq!(asked, allowed + 1, "once a block, and not again after a no");
+            assert_eq!(film.done - before, BLOCK as u64 * (allowed + 1), "the first block is always done");
+        }
+        let drawn: Vec<bool> = film.pixels.iter().map(|pixel| pixel.alpha == 1.0).collect();
+        let expected: Vec<bool> = (0..film.pixels.len()).map(|place| (place as u64) < film.done).collect();
+        assert_eq!(drawn, expected, "without gaps");
+        reference.add_while(&mut film, || true);
+        assert_eq!(film.done, 64 * 32, "no further than a sample of each pixel");
+    }
 }

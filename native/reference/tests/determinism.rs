@@ -10,6 +10,7 @@ use lisle_core::scattering::Material;
 use lisle_core::scene::{Light, Scene};
 use lisle_core::yarn::Yarn;
 use lisle_core::{Curves, Yarns};
+use lisle_reference::fibers::{Options, fibers};
 use lisle_reference::{Error, Film, Image, Reference, Settings};
 use support::{looking, object, orthographic, prepare, scene, sun};
 
@@ -90,6 +91,29 @@ fn stopping_and_going_on_changes_no_bit() {
     let again = prepare(&scene, &settings());
     again.render(&mut film, &mut |_| ControlFlow::Continue(())).expect("a picture");
     assert_eq!(film, expected);
+}
+
+/// Whoever wants to stop is asked again before there are many more points, in long curves as in many short ones.
+#[test]
+fn fibers_are_made_a_few_at_a_time() {
+    let waves = |curves: u32, knots: u32| {
+        let knot = |row: u32, i: u32| [0.1 * i as f32, 0.1 * (i as f32).sin(), row as f32];
+        let rows = (0..curves).map(|row| (0..knots).map(|i| knot(row, i)).collect());
+        Yarns::new(Curves::catmull_rom(rows.collect(), false), Some(0.1)).expect("valid curves")
+    };
+    let yarn = Yarn { fibers_per_ply: 4, ..Yarn::preset("silk-1").expect("preset") };
+    for (curves, knots) in [(1, 20_001), (100, 201)] {
+        let (yarns, mut asked, mut last) = (waves(curves, knots), 0, 0.0);
+        let mut count = |done| {
+            assert!(done > last && done <= 1.0, "{done} after {last}");
+            (asked, last) = (asked + 1, done);
+            ControlFlow::Continue(())
+        };
+        fibers(yarns.strands(), &yarn, &Options::default(), &mut count).expect("fibers");
+        let segments = curves * (knots - 1) * yarn.plies * yarn.fibers_per_ply;
+        assert!(asked >= segments / 5000, "{asked} times for {segments} segments in {curves} curves");
+        assert_eq!(last, 1.0);
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! One fiber of one curve as chains of points, as close as its bends ask for.
 
+use std::ops::Range;
+
 use glam::{DMat4, DVec3};
 use lisle_core::yarn::{Fiber, FiberTable, Segment, Twist, Yarn, YarnPoint, breaks, fiber_point};
 
@@ -81,14 +83,15 @@ struct Walk<'a> {
 }
 
 impl Curve<'_> {
-    /// The chains of one fiber along the whole curve.
-    pub fn chains(&self, fiber: Fiber) -> Chains {
-        let mut chains = Chains::default();
-        for number in 0..self.segments.len() {
-            Walk { curve: self, fiber, number, chains: &mut chains }.segment(number == 0);
+    /// Goes on with the chains of one fiber over the next segments; at the curve's end they end.
+    pub fn extend(&self, chains: &mut Chains, fiber: Fiber, segments: Range<usize>) {
+        let is_end = segments.end == self.segments.len();
+        for number in segments {
+            Walk { curve: self, fiber, number, chains }.segment(number == 0);
         }
-        chains.end();
-        chains
+        if is_end {
+            chains.end();
+        }
     }
 }
 

@@ -13,8 +13,8 @@ use super::detail::{CurveDetail, Detail};
 /// Chord errors that make sense: below, f32 rounds more away.
 const CHORD_ERRORS: RangeInclusive<f64> = 1e-3..=10.0;
 
-/// Segments of fibers that are made between two calls of the progress callback, about: a fraction of a second.
-const BATCH: usize = 1 << 16;
+/// Segments of fibers that are made between two calls of the progress callback, about: some hundredths of a second.
+const BATCH: usize = 1 << 12;
 
 /// How fibers become chains of points.
 #[derive(Clone, Copy, Debug)]
@@ -96,26 +96,33 @@ pub(crate) fn append(
         };
         let seed = fiber_seed(options.object_id, index as u32);
         let fibers = yarn.plies * yarn.fibers_per_ply;
-        let batch = (BATCH / curve.segments.len().max(1)).max(rayon::current_num_threads()) as u32;
+        let threads = rayon::current_num_threads();
+        let count = curve.segments.len();
+        let batch = (BATCH / count.max(1)).max(threads) as u32;
+        // A long curve has more segments than are made at once.
+        let stretch = (BATCH / threads).max(1);
+        let curves = strands.closed().len() as f64;
         for first in (0..fibers).step_by(batch as usize) {
             let end = fibers.min(first + batch);
-            let made: Vec<Chains> = (first..end)
-                .into_par_iter()
-                .map(|i| curve.chains(Fiber { seed, ply: i / yarn.fibers_per_ply, index: i % yarn.fibers_per_ply }))
-                .collect();
-            let count: usize = made.iter().map(|chains| chains.points.len()).sum();
+            let of_ply = |i: u32| Fiber { seed, ply: i / yarn.fibers_per_ply, index: i % yarn.fibers_per_ply };
+            let mut made: Vec<(Fiber, Chains)> = (first..end).map(|i| (of_ply(i), Chains::default())).collect();
+            for start in (0..count).step_by(stretch) {
+                let segments = start..count.min(start + stretch);
+                let done = f64::from(first) + f64::from(end - first) * segments.end as f64 / count as f64;
+                made.par_iter_mut().for_each(|(fiber, chains)| curve.extend(chains, *fiber, segments.clone()));
+                if progress((index as f64 + done / f64::from(fibers)) / curves).is_break() {
+                    return Err(FibersError::Cancelled);
+                }
+            }
+            let count: usize = made.iter().map(|(_, chains)| chains.points.len()).sum();
             if all.points.len() + count > u32::MAX as usize {
                 return Err(FibersError::TooMany);
             }
             all.points.reserve(count);
-            for chains in made {
+            for (_, chains) in made {
                 let first = all.points.len() as u32;
                 all.points.extend(chains.points);
                 all.offsets.extend(chains.ends.iter().map(|end| first + end));
-            }
-            let share = (index as f64 + f64::from(end) / f64::from(fibers)) / strands.closed().len() as f64;
-            if progress(share).is_break() {
-                return Err(FibersError::Cancelled);
             }
         }
     }
