@@ -68,9 +68,7 @@ def _draw(lisle, engine, depsgraph, size, note):
     if settings.method == "REFERENCE":
         if any(name in wanted for name in lisle.FURTHER_PASSES):
             note("the path tracer leaves passes black that only the renderer draws")
-        if shot.steps:
-            note("the path tracer draws no motion blur")
-        image = reference.draw(lisle, shot.scene, settings, **options)
+        image = reference.draw(lisle, shot.steps or shot.scene, settings, **options)
     else:
         if not settings.multiple_scattering:
             options["transport_photons"] = 0
@@ -142,11 +140,8 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
         return scene, add_objects(lisle, scene, moved, at_rest, REST_SHAPES, note)
 
     scene, pass_index_of = scene_of(content, native_camera(lisle, camera, depsgraph, frame_size))
-    if depsgraph.scene.lisle.method != "REFERENCE":
-        scene.meshes, of_meshes = SURFACES.meshes(lisle, content.meshes, pass_index_of)
-        pass_index_of |= of_meshes
-    elif content.meshes:
-        note("the path tracer does not draw meshes")
+    scene.meshes, of_meshes = SURFACES.meshes(lisle, content.meshes, pass_index_of)
+    pass_index_of |= of_meshes
     shutter, now = shutter_times(depsgraph.scene), present(depsgraph.scene)
     if shutter and with_neighbours:
         note("the pass Vector is black, because there is motion blur")

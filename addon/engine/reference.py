@@ -2,10 +2,10 @@
 """Final pictures by the path tracer, from the same scene as the renderer's."""
 
 
-def draw(lisle, scene, settings, **options):
-    """The lisle.Image of a lisle.Scene; `options` go to `lisle.Reference.render`."""
+def draw(lisle, what, settings, **options):
+    """The lisle.Image of a lisle.Scene, or of a list of them over the shutter; `options` go to `lisle.Reference.render`."""
     return lisle.Reference().render(
-        scene,
+        what,
         samples=settings.reference_samples,
         bounces=settings.reference_bounces or None,
         shading=settings.shading,

@@ -96,7 +96,7 @@ class LISLE_RENDER_PT_motion_blur(LislePanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, render = self.split_layout(), context.scene.render
-        layout.active = render.use_motion_blur and context.scene.lisle.method != "REFERENCE"
+        layout.active = render.use_motion_blur
         layout.prop(render, "motion_blur_position", text="Position")
         layout.prop(render, "motion_blur_shutter", text="Shutter")
         layout.prop(context.scene.lisle, "motion_steps")

@@ -198,6 +198,7 @@ def reference(
     ambient: tuple[float, float, float],
     environment: Environment | None,
     camera: Camera,
+    later: Sequence[tuple[Sequence[Object], Camera]],
     settings: Mapping[str, Any],
     checkpoint: Path | None,
     progress: Callable[[float], bool | None] | None,

@@ -1,6 +1,6 @@
 """The reference: every fiber explicit, and light scattered between them as often as it likes."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ from .lights import Light
 from .material import Material
 from .mesh import Mesh
 from .renderer import Progress
-from .scene import DEFAULT_YARN, Scene, scene_of
+from .scene import DEFAULT_YARN, Scene, scenes_of
 from .yarn import Yarn
 
 CHORD_ERROR = 0.25
@@ -83,7 +83,7 @@ def fibers(
 class Reference:
     """A path tracer through explicit fibers: slow, and right.
 
-    It draws the same yarns as `Renderer` from the same arguments, but no meshes.
+    It draws the same as `Renderer`, from the same arguments.
 
     It runs on all cores and needs no graphics adapter. Memory: 40 bytes for each segment of a fiber, up to 200
     while it starts. A knitted glove, 140 000 yarn radii of yarn with 225 fibers, has 100 million.
@@ -91,11 +91,11 @@ class Reference:
 
     def render(
         self,
-        what: Yarns | Scene,
+        what: Yarns | Scene | Sequence[Yarns] | Sequence[Scene],
         *,
         yarn: Yarn | None = None,
         material: Material | None = None,
-        camera: Camera | None = None,
+        camera: Camera | Sequence[Camera] | None = None,
         lights: Iterable[Light] | None = None,
         ambient: Vector | None = None,
         environment: Environment | None = None,
@@ -116,15 +116,19 @@ class Reference:
 
         The same arguments give the same bits on any number of cores.
 
+        Motion blur as by `Renderer.render`: a list stands for even steps over the time that the shutter is open. Each
+        sample has a time of its own. If more than the camera moves, fibers are made anew for each sample.
+
         Args:
-            what: yarns, with the next seven arguments; or a scene, which has them already.
+            what: yarns, with the next seven arguments; or a scene, which has them already; or a list, see above.
             yarn: the procedural yarn; "cotton-1" unless given.
             material: how its fibers scatter; "cotton" unless given.
-            camera: viewpoint; `Camera.fit(yarns)` unless given.
+            camera: viewpoint, or one for each time step; `Camera.fit(yarns)` of the first unless given.
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
             environment: light from all sides, which is added to `ambient`.
-            meshes: none, because the path tracer draws yarns alone.
+            meshes: matt surfaces, from and to which light is scattered. A shadow catcher or a hole in the picture is one
+                for the camera alone.
             samples: independent paths per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
@@ -143,7 +147,8 @@ class Reference:
             OSError: the checkpoint cannot be read or written.
             Cancelled: `progress` returned False. What `progress` raises comes through as it is.
         """
-        scene = scene_of(what, yarn, material, camera, lights, ambient, environment, meshes)
+        steps = scenes_of(what, yarn, material, camera, lights, ambient, environment, meshes)
+        scene = steps[0]
         size = arguments.pixels("size", scene.camera.size if size is None else size)
         passes, statistics = _native.reference(
             scene.objects,
@@ -152,6 +157,7 @@ class Reference:
             scene.ambient,
             scene.environment,
             scene.camera,
+            [(step.objects, step.camera) for step in steps[1:]],
             {
                 "size": size,
                 "region": None if region is None else arguments.from_top_left(region, size),

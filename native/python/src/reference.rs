@@ -16,7 +16,7 @@ use crate::environment::EnvironmentFields;
 use crate::error::Failure;
 use crate::gil::{Listener, detached};
 use crate::mesh::MeshFields;
-use crate::scene::{CameraFields, LightFields, ObjectFields, scene, shading};
+use crate::scene::{CameraFields, LightFields, ObjectFields, StepFields, moved, scene, shading};
 use crate::yarn::extract_yarn;
 use crate::yarns::Yarns;
 
@@ -87,7 +87,7 @@ pub fn fibers<'py>(
     Ok([array(py, points, &[count, 3])?, array(py, made.offsets, &[chains])?, array::<f32>(py, radii, &[count])?])
 }
 
-/// Passes by name, and statistics, of a scene drawn by the path tracer.
+/// Passes by name, and statistics, of a scene drawn by the path tracer. `later` are the further time steps.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "called from one place in the package, by position")]
 pub fn reference<'py>(
@@ -98,15 +98,19 @@ pub fn reference<'py>(
     ambient: [f32; 3],
     environment: Option<EnvironmentFields>,
     camera: CameraFields,
+    later: Vec<StepFields<'py>>,
     settings: &Bound<'py, PyDict>,
     checkpoint: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
 ) -> Result<(Bound<'py, PyDict>, Bound<'py, PyDict>), Failure> {
     let settings: SettingsItems = settings.extract().map_err(|error| Failure::Input(field_error(py, &error)))?;
     let settings = settings.settings()?;
-    let scene = scene(objects, meshes, lights, ambient, environment, camera)?;
+    let mut steps = vec![scene(objects, meshes, lights, ambient, environment, camera)?];
+    for step in later {
+        steps.push(moved(&steps[0], step)?);
+    }
     let mut listener = Listener::new(progress);
-    let result = detached(py, || draw(&scene, &settings, checkpoint.as_deref(), &mut listener));
+    let result = detached(py, || draw(&steps, &settings, checkpoint.as_deref(), &mut listener));
     let (image, segments, bytes) = listener.outcome(result)?;
     let statistics = PyDict::new(py);
     statistics.set_item("fiber_segments", segments)?;
@@ -116,13 +120,13 @@ pub fn reference<'py>(
 
 /// The picture, and how many segments and bytes its fibers have.
 fn draw(
-    scene: &Scene,
+    steps: &[Scene],
     settings: &Settings,
     checkpoint: Option<&Path>,
     listener: &mut Listener,
 ) -> Result<(Image, usize, usize), Failure> {
     let kept = checkpoint.filter(|path| path.exists()).map(read).transpose()?;
-    let reference = Reference::new(scene, settings, &mut || listener.report(0.0))?;
+    let reference = Reference::exposed(steps, settings, &mut || listener.report(0.0))?;
     let mut film = kept.unwrap_or_else(|| reference.film());
     let mut saved = Instant::now();
     let mut failure = None;

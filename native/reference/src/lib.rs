@@ -6,11 +6,14 @@ pub mod cone;
 mod error;
 pub mod fibers;
 mod film;
+mod hierarchy;
 mod light;
 mod material;
 mod path;
 mod render;
 mod settings;
+mod shutter;
+mod surfaces;
 mod world;
 
 pub use error::Error;

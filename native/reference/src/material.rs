@@ -18,6 +18,7 @@ pub(crate) enum Part {
 }
 
 /// Both parts of a material.
+#[derive(Clone)]
 pub(crate) struct Scattering {
     fiber: Option<FiberScattering>,
     surface_albedo: DVec3,
@@ -48,6 +49,11 @@ impl Scattering {
             }
         };
         Self { fiber, surface_albedo }
+    }
+
+    /// A matt surface of one colour.
+    pub fn matt(color: DVec3) -> Self {
+        Self { fiber: None, surface_albedo: color }
     }
 
     /// The parts that scatter anything.
