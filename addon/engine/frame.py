@@ -148,4 +148,6 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
     around = [now - 1, now + 1] if with_neighbours and not shutter else []
     moved = at_times(lisle, engine, depsgraph, content, shutter or around, camera.original, frame_size)
     others = [scene_of(*moment)[0] for moment in moved]
+    for other in others:
+        other.meshes = scene.meshes
     return _Shot(scene, others if shutter else [], others if around else [], pass_index_of)

@@ -73,6 +73,34 @@ def test_it_draws_what_the_renderer_draws(lisle, tmp_path):
 
 
 @pytest.mark.blender("wheel")
+@pytest.mark.parametrize("method", ["REAL_TIME", "REFERENCE"])
+def test_meshes_and_motion_blur_are_drawn_without_a_note(lisle, tmp_path, capfd, method):
+    import bpy
+
+    yarn = lit_yarn()
+    settings().method, settings().motion_steps = method, 2
+    settings().reference_samples = settings().samples = 16
+    data = bpy.data.meshes.new("Plate")
+    data.from_pydata([(0.5, -9, 1), (9, -9, 1), (9, 9, 1), (0.5, 9, 1)], [], [(0, 1, 2, 3)])
+    scenes.link(bpy.data.objects.new("Plate", data))
+    still = scenes.render_rgba(tmp_path / "still.exr")
+    scenes.keyframes(yarn, "location", {1: (0, -1, 0), 3: (0, 1, 0)})
+    bpy.context.scene.frame_set(2)
+    bpy.context.scene.render.use_motion_blur, bpy.context.scene.render.motion_blur_shutter = True, 1.0
+    blurred = scenes.render_rgba(tmp_path / "blurred.exr")
+    said = "".join(capfd.readouterr())
+    assert "path tracer" not in said and "not draw" not in said
+    left, right = slice(10, 28), slice(44, 60)
+    for picture in (still, blurred):
+        assert (picture[:, right, 3] == 1).all(), "the plate"
+    rows, still_rows = (picture[:, left, 3].mean(axis=1) for picture in (blurred, still))
+    # As much yarn, over a way as long as its width: everywhere paler, and farther.
+    assert rows.sum() == pytest.approx(still_rows.sum(), rel=0.1)
+    assert (rows > 0.05).sum() > (still_rows > 0.05).sum() + 3
+    assert still_rows.max() > 0.95 and rows[still_rows > 0.95].min() < 0.9
+
+
+@pytest.mark.blender("wheel")
 def test_borders_and_passes(lisle, tmp_path):
     import bpy
 

@@ -111,5 +111,42 @@ def test_a_scene_takes_meshes_alone(renderer, yarns):
         lisle.Scene(from_above(), meshes=[SQUARE])
     scene = lisle.Scene(from_above(), [lisle.Sun(direction=(0, 0, -1))], meshes=[square()])
     assert set(np.unique(renderer.render(scene, samples=1)["object_id"])) == {0, 1}
-    with pytest.raises(lisle.InputError, match="meshes"):
-        lisle.Reference().render(scene, samples=1)
+    traced = lisle.Reference().render(scene, samples=2)
+    np.testing.assert_allclose(traced["combined"][24, 32], (0.8 / np.pi,) * 3 + (1.0,), rtol=1e-3)
+    assert set(np.unique(traced["object_id"])) == {0, 1}
+
+
+def test_shadows_are_those_of_the_path_tracer(renderer, yarns):
+    """A plate shades one half of a yarn, and the yarn a floor."""
+    floor = square(z=-0.5, scale=4.0, base_color=(0.5, 0.5, 0.5))
+    turned = np.diag([1.0, 1.0, 1.0, 1.0])
+    turned[:3, 3] = (1.0, -0.85, 1.0)
+    # In the sun's way to the half at x > 0: 1 above the yarn, and beside it for the camera.
+    plate = lisle.Mesh(SQUARE * (1.0, 0.7, 1.0), HALVES, transform=turned)
+    # Fibers without glints, whose means converge.
+    matt = lisle.Material.preset("silk").replace(diffuse=(0.6,) * 3, specular=(0.0,) * 3)
+    options = {"material": matt, "shading": "simple", "filter_width": 1.0}
+
+    def both(meshes):
+        rendered = draw(renderer, yarns, meshes, samples=64, lod_pixels=0, **options)
+        traced = draw(lisle.Reference(), yarns, meshes, samples=64, bounces=1, **options)
+        return [image["combined"][..., 0].astype(np.float64) for image in (rendered, traced)]
+
+    (ours, expected), (ours_open, open_) = both([floor, plate]), both([floor])
+    on_yarn = slice(23, 25)
+    for picture, free in ((ours, ours_open), (expected, open_)):
+        shares = (picture[on_yarn] / free[on_yarn]).mean(axis=0)
+        assert (np.abs(shares[15:29] - 1.0) < 0.05).all(), "the half in the sun stays as it is"
+        assert (shares[35:50] < 0.02).all(), "the other is dark"
+    # Where the edge of the shadow lies, the brightness of plate and floor, and the yarn's shadow on the floor.
+    np.testing.assert_allclose(
+        *((a[on_yarn] / b[on_yarn]).mean(axis=0)[15:50] for a, b in ((ours, ours_open), (expected, open_))), atol=0.05
+    )
+    np.testing.assert_allclose(ours[28:46, 15:50].mean(), expected[28:46, 15:50].mean(), rtol=0.02)
+    rows = slice(12, 21)
+    lit = open_[44, 17:47].mean()
+    shade, expected_shade = (picture[rows, 17:47].mean(axis=1) / lit for picture in (ours_open, open_))
+    # The renderer's shadow on a mesh is that of the yarn's tube: nearly a row more on either side.
+    np.testing.assert_allclose(shade[[0, 1, 3, 4, 5, 7, 8]], (1, 1, 0, 0, 0, 1, 1), atol=0.02)
+    np.testing.assert_allclose(expected_shade[[0, 1, 3, 4, 5, 7, 8]], (1, 1, 0, 0, 0, 1, 1), atol=0.02)
+    assert (expected_shade >= shade - 0.01).all()
