@@ -5,8 +5,12 @@ The extension registers without it, so that panels can say what is wrong instead
 """
 
 import importlib
+import sys
+
+import bpy
 
 from .core.errors import NativeError
+from .core.threads import asked_for
 
 _ADVICE = (
     "The extension's wheel is missing or was built for another system. "
@@ -16,10 +20,17 @@ _ADVICE = (
 
 def module():
     """The imported `lisle` module. Raises NativeError with advice where it cannot be had."""
+    is_new = "lisle" not in sys.modules
     try:
-        return importlib.import_module("lisle")
+        lisle = importlib.import_module("lisle")
     except Exception as error:  # a broken shared library raises OSError, a panicking initialiser anything
         raise NativeError(f"The native module 'lisle' cannot be loaded ({error}). {_ADVICE}") from error
+    # Before any work: threads can be set no more then. The arguments of a program that imports bpy are not Blender's.
+    if is_new and not bpy.app.module:
+        count = asked_for(sys.argv)
+        if count is not None:
+            lisle.set_threads(count)
+    return lisle
 
 
 def problem():

@@ -32,6 +32,14 @@ class Surface:
                 hasher.update(np.ascontiguousarray(array))
         return hasher.digest()
 
+    def corresponds(self, other):
+        """Whether it is the other with its corners moved."""
+        return (
+            self.positions.shape == other.positions.shape
+            and np.array_equal(self.triangles, other.triangles)
+            and (self.normals is None) == (other.normals is None)
+        )
+
 
 def by_material(positions, triangles, normals, material_index):
     """[(index, Surface)]: the triangles of each material, with the positions that they have."""

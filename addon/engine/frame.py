@@ -42,11 +42,10 @@ def _draw(lisle, engine, depsgraph, size, note):
     frame_size = engine.resolution_x, engine.resolution_y
     region = _region(depsgraph.scene.render, frame_size, size)
     wanted = wanted_passes(depsgraph.view_layer)
-    shot = _native_shot(lisle, engine, depsgraph, frame_size, note, "vector" in wanted)
     settings, render = depsgraph.scene.lisle, depsgraph.scene.render
-
     if render.threads_mode == "FIXED":
-        lisle.set_threads(render.threads)  # of no effect once anything was drawn in this process
+        lisle.set_threads(render.threads)  # of no effect once there was any work in this process
+    shot = _native_shot(lisle, engine, depsgraph, frame_size, note, "vector" in wanted)
 
     shown = None
 
@@ -148,6 +147,9 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
     around = [now - 1, now + 1] if with_neighbours and not shutter else []
     moved = at_times(lisle, engine, depsgraph, content, shutter or around, camera.original, frame_size)
     others = [scene_of(*moment)[0] for moment in moved]
-    for other in others:
-        other.meshes = scene.meshes
+    if scene.meshes:
+        for other, (there, _) in zip(others, moved, strict=True):
+            other.meshes = SURFACES.moved(lisle, scene.meshes, content.meshes, there.meshes)
+        if shutter and depsgraph.scene.lisle.method == "REFERENCE":
+            note("the path tracer does not blur meshes by motion")
     return _Shot(scene, others if shutter else [], others if around else [], pass_index_of)

@@ -62,4 +62,19 @@ def _moved(content, other):
     for placement in content.placements:
         there = places.get((placement.key, placement.identity))
         placements.append(replace(placement, world_from_object=there.pop(0)) if there else placement)
-    return replace(content, geometries=geometries, placements=placements)
+    return replace(content, geometries=geometries, placements=placements, meshes=_moved_meshes(content, other))
+
+
+def _moved_meshes(content, other):
+    places = {}
+    for placement in other.meshes:
+        places.setdefault(placement.identity, []).append(placement)
+    meshes = []
+    for placement in content.meshes:
+        there = places.get(placement.identity)
+        if there:
+            moved = there.pop(0)
+            surface = moved.surface if moved.surface.corresponds(placement.surface) else placement.surface
+            placement = replace(placement, world_from_object=moved.world_from_object, surface=surface)
+        meshes.append(placement)
+    return meshes

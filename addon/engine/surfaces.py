@@ -18,30 +18,51 @@ class Surfaces:
         kept, meshes, pass_index_of, taken = {}, [], {}, set(taken)
         for placement in placements:
             surface = placement.surface
-            label = {"material_name": placement.material_name, "material_index": placement.material_index}
-            key = (surface.digest, placement.color, placement.kind, *label.values())
-            mesh = kept.get(key) or self._kept.get(key)
-            if mesh is None:
-                mesh = lisle.Mesh(
-                    surface.positions,
-                    surface.triangles,
-                    surface.normals,
-                    base_color=placement.color,
-                    kind=placement.kind,
-                    name=placement.name,
-                    **label,
-                )
+            label = placement.material_name, placement.material_index
+            key = (surface.digest, placement.color, placement.kind, *label)
+            mesh = kept.get(key) or self._kept.get(key) or _native(lisle, placement)
             kept[key] = mesh
             identity = free_id(placement.identity, taken)
             taken.add(identity)
             pass_index_of[identity] = placement.pass_index
-            meshes.append(
-                mesh.at(
-                    placement.world_from_object,
-                    object_id=identity,
-                    name=placement.name,
-                    object_index=placement.pass_index,
-                )
-            )
+            meshes.append(_placed(mesh, placement, identity))
         self._kept = kept
         return meshes, pass_index_of
+
+    def moved(self, lisle, meshes, placements, others):
+        """[lisle.Mesh] like `meshes`, which are of `placements`, at the places and in the shapes of `others`."""
+        made, found = {}, []
+        for mesh, placement, other in zip(meshes, placements, others, strict=True):
+            surface = other.surface
+            if surface.digest == placement.surface.digest:
+                shape = mesh
+            else:
+                key = (surface.digest, mesh.base_color, mesh.kind, mesh.material_name, mesh.material_index)
+                if key not in made:
+                    made[key] = _native(lisle, other)
+                shape = made[key]
+            found.append(_placed(shape, other, mesh.object_id))
+        return found
+
+
+def _native(lisle, placement):
+    surface = placement.surface
+    return lisle.Mesh(
+        surface.positions,
+        surface.triangles,
+        surface.normals,
+        base_color=placement.color,
+        kind=placement.kind,
+        name=placement.name,
+        material_name=placement.material_name,
+        material_index=placement.material_index,
+    )
+
+
+def _placed(mesh, placement, identity):
+    return mesh.at(
+        placement.world_from_object,
+        object_id=identity,
+        name=placement.name,
+        object_index=placement.pass_index,
+    )

@@ -114,8 +114,8 @@ fn add_aovs(index: u32, draw: u32, surface: Surface, shaded: Shaded) {
     }
 }
 
-// Of a point of a mesh: what a yarn's coordinates would say stays 0.
-fn add_mesh_aovs(index: u32, draw: u32, position: vec3f, color: vec3f, shaded: Shaded) {
+// Of a point of a mesh's triangle: what a yarn's coordinates would say stays 0.
+fn add_mesh_aovs(index: u32, draw: u32, triangle: u32, position: vec3f, color: vec3f, shaded: Shaded) {
     add_light(index, shaded);
     if frame.plane_matte != NO_PLANE {
         add_matte(index, draw);
@@ -130,6 +130,7 @@ fn add_mesh_aovs(index: u32, draw: u32, position: vec3f, color: vec3f, shaded: S
         add_aov(frame.plane_position, index, position);
     }
     if frame.plane_vector != NO_PLANE {
+        aov_planes[aov_word(frame.plane_vector + VECTOR_PARAMETER, index)] = triangle;
         add_aov(frame.plane_vector + VECTOR_PLACE, index, position);
     }
 }

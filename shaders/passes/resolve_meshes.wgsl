@@ -177,5 +177,6 @@ fn resolve_meshes(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invoca
     let depth = to_pixel(frame.pixel_from_render, point.position).w;
     let number = frame.draw_count + point.draw;
     add_sample(index, color, point.normal, vec3f(0.0), depth, f32(number + 1u));
-    add_mesh_aovs(index, number, point.position, select(vec3f(0.0), draw.color, draw.kind == MESH_SHADED), shaded);
+    let own = triangle - 1u - draw.first_triangle;
+    add_mesh_aovs(index, number, own, point.position, select(vec3f(0.0), draw.color, draw.kind == MESH_SHADED), shaded);
 }

@@ -15,6 +15,7 @@ from lisle_blender.core.curves import (
 )
 from lisle_blender.core.lights import area_m2, unnormalized_factor
 from lisle_blender.core.pixels import look_up, pass_rect, stable_id
+from lisle_blender.core.threads import asked_for
 
 
 def arrays(counts, **changes):
@@ -160,3 +161,11 @@ def test_ids_are_looked_up_by_pixel():
 def test_stable_ids_are_the_same_in_every_process():
     assert stable_id(("Yarn",), 3) == 6636771
     assert stable_id(("Yarn",), 4) != stable_id(("Yarn",), 3)
+
+
+def test_threads_of_the_command_line():
+    assert asked_for(["blender", "-b", "-t", "3", "scene.blend"]) == 3
+    assert asked_for(["blender", "--threads", "12"]) == 12
+    assert asked_for(["blender", "-b", "-t", "0"]) is None, "all"
+    assert asked_for(["blender", "-b"]) is asked_for(["blender", "-t"]) is asked_for(["blender", "-t", "x"]) is None
+    assert asked_for(["blender", "-b", "--python", "x.py", "--", "-t", "3"]) is None, "the script's own"

@@ -314,3 +314,32 @@ def test_a_grey_card_is_that_of_cycles(lisle, tmp_path):
     np.testing.assert_allclose(ours[0], theirs[0], rtol=1e-6)
     np.testing.assert_allclose(ours[1], theirs[1], atol=1 / 65535)
     assert ours[0][0, 0, 0] == pytest.approx(0.18) and 0.2 < ours[1][0] < 0.6
+
+
+def test_meshes_move_while_the_shutter_is_open(lisle):
+    import bpy
+    from test_meshes import cube
+
+    scenes.curves("Yarn", scenes.line())
+    moving, bending, other = (cube(name) for name in ("Moving", "Bending", "Other"))
+    scenes.keyframes(moving, "location", {0: (0, 0, 0), 10: (10, 0, 0)})
+    make_linear(moving)
+    bending.shape_key_add(name="Basis")
+    key = bending.shape_key_add(name="Bent")
+    key.data[0].co.x += 10
+    scenes.keyframes(key, "value", {0: 0.0, 10: 1.0})
+    make_linear(bending.data.shape_keys)
+    subdivision = other.modifiers.new("Subdivision", "SUBSURF")
+    for frame, levels in ((3, 0), (4, 1)):
+        subdivision.render_levels = levels
+        subdivision.keyframe_insert("render_levels", frame=frame)
+    bpy.context.scene.frame_set(3)
+    use_motion_blur(1.0, "START", steps=2)
+    steps, _ = render(lisle)
+    by_name = [{mesh.name: mesh for mesh in step.meshes} for step in steps]
+    assert [mesh["Moving"].world_from_object[0, 3] for mesh in by_name] == pytest.approx([3, 3.5, 4], abs=1e-4)
+    corners = [mesh["Bending"].positions[0, 0] for mesh in by_name]
+    assert np.diff(corners) == pytest.approx([0.5, 0.5], abs=1e-3)
+    assert by_name[0]["Moving"].triangles is by_name[2]["Moving"].triangles
+    assert [len(mesh["Other"].corners) for mesh in by_name] == [12] * 3, "one of more triangles is not the same, moved"
+    assert [[mesh.object_id for mesh in step.meshes] for step in steps] == [[m.object_id for m in steps[0].meshes]] * 3

@@ -206,3 +206,13 @@ def test_usd_animation(lisle, data, tmp_path):
     for picture in pictures:
         assert 0.5 < picture["A"].mean() <= 1 and picture["R"].mean() > 0.01
     assert not np.array_equal(pictures[0]["R"], pictures[2]["R"])
+
+
+def test_fixed_threads_of_the_scene_count(lisle):
+    import bpy
+
+    lit_yarns()
+    render = bpy.context.scene.render
+    render.threads_mode, render.threads = "FIXED", 1
+    bpy.ops.render.render()
+    assert lisle.threads() == 1

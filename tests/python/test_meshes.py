@@ -150,3 +150,86 @@ def test_shadows_are_those_of_the_path_tracer(renderer, yarns):
     np.testing.assert_allclose(shade[[0, 1, 3, 4, 5, 7, 8]], (1, 1, 0, 0, 0, 1, 1), atol=0.02)
     np.testing.assert_allclose(expected_shade[[0, 1, 3, 4, 5, 7, 8]], (1, 1, 0, 0, 0, 1, 1), atol=0.02)
     assert (expected_shade >= shade - 0.01).all()
+
+
+def scene_with(yarns, mesh):
+    scene = lisle.Scene(from_above(), [lisle.Sun(direction=(0, 0, -1), strength=np.pi)], meshes=[mesh])
+    scene.add(yarns)
+    return scene
+
+
+def expose(renderer, yarns, meshes, **options):
+    """Through a shutter; one mesh is a picture without motion."""
+    scenes = [scene_with(yarns, mesh) for mesh in meshes]
+    return renderer.render(scenes if len(scenes) > 1 else scenes[0], **{"filter_width": 0.0, "samples": 64} | options)
+
+
+def shifted(distance):
+    transform = np.eye(4)
+    transform[0, 3] = distance
+    return transform
+
+
+def test_meshes_blur_by_moving_and_by_changing_their_shape(renderer, yarns):
+    small = 0.4 * SQUARE + [0, 0.6, 0.5]
+    still = lisle.Mesh(small, HALVES)
+    before = expose(renderer, yarns, [still])["combined"]
+    moved = expose(renderer, yarns, [still.at(shifted(-0.4)), still.at(shifted(0.4))])["alpha"][12]
+    # Of the shutter's time, a place is covered as long as the square of 0.8 m takes to pass: it travels 0.8 m.
+    x = (np.arange(64) + 0.5) / 20 - 1.6
+    expected = np.clip(1 - np.abs(x) / 0.8, 0, 1)
+    np.testing.assert_allclose(moved, expected, atol=0.04)
+    ends = [lisle.Mesh(small + [side, 0, 0], HALVES) for side in (-0.4, 0.4)]
+    changed = expose(renderer, yarns, ends)["alpha"][12]
+    np.testing.assert_allclose(changed, expected, atol=0.04)
+    # Nothing of it is left behind.
+    np.testing.assert_array_equal(expose(renderer, yarns, [still])["combined"], before)
+    first = expose(renderer, yarns, ends[:1])["alpha"]
+    np.testing.assert_array_equal(first, expose(lisle.Renderer(), yarns, ends[:1])["alpha"])
+
+
+def test_shadows_of_meshes_blur_with_them(renderer, yarns):
+    """A roof beyond the picture throws a shadow on the floor that wanders while the shutter is open."""
+    floor = lisle.Mesh(2 * SQUARE - [0, 0, 1], HALVES)
+    roof = 0.4 * SQUARE + [0, 2.6, 1]
+
+    def scene(offset):
+        roofs = lisle.Mesh(roof + [offset, 0, 0], HALVES)
+        scene = lisle.Scene(from_above(), [lisle.Sun(direction=(0, -1, -1), strength=1)], meshes=[floor, roofs])
+        scene.add(yarns)
+        return scene
+
+    lit = renderer.render([scene(-0.4), scene(0.4)], samples=64, filter_width=0.0)["combined"][12, :, 0]
+    expected = np.clip(np.abs((np.arange(64) + 0.5) / 20 - 1.6) / 0.8, 0, 1) * lit.max()
+    np.testing.assert_allclose(lit, expected, atol=0.12 * lit.max())
+
+
+def test_meshes_that_are_others_stay_as_they_are(renderer, yarns):
+    still = lisle.Mesh(0.4 * SQUARE + [0, 0.6, 0.5], HALVES)
+    plain = expose(renderer, yarns, [still])["alpha"]
+    other = lisle.Mesh(0.8 * SQUARE + [0, 0.6, 0.5], HALVES[:1])
+    np.testing.assert_array_equal(expose(renderer, yarns, [still, other])["alpha"], plain)
+    without = scene_with(yarns, still)
+    without.meshes = ()
+    scenes = [scene_with(yarns, still.at(shifted(0.3))), without]
+    held = renderer.render(scenes, filter_width=0.0, samples=64)["alpha"]
+    assert held[12, 32 + 6] == 1, "where it is at first"
+
+
+def test_vectors_of_meshes_follow_their_shape(renderer, yarns):
+    def bent(lean, up, transform=None):
+        return lisle.Mesh(
+            SQUARE + [0, 0, 0.5] + np.outer(SQUARE[:, 1], [lean, 0, 0]) + [0, up, 0], HALVES, transform=transform
+        )
+
+    ends = {"before": scene_with(yarns, bent(-0.1, 0)), "after": scene_with(yarns, bent(0, 0.05, shifted(0.2)))}
+    image = renderer.render(scene_with(yarns, bent(0, 0)), passes=["vector"], samples=1, **ends)
+    inside = image["vector"][6:42, 14:50]
+    y = 1.2 - (np.arange(48) + 0.5)[6:42, None] / 20
+    per_metre = 20
+    expected = np.stack(
+        np.broadcast_arrays(-0.1 * y * per_metre, 0 * y, -0.2 * per_metre + 0 * y, -0.05 * per_metre + 0 * y), -1
+    )
+    np.testing.assert_allclose(inside, np.broadcast_to(expected, inside.shape), atol=0.01)
+    rigid = {name: scene_with(yarns, bent(0, 0)) for name in ends}
+    assert not renderer.render(scene_with(yarns, bent(0, 0)), passes=["vector"], samples=1, **rigid)["vector"].any()

@@ -1,5 +1,7 @@
 """`blender -b`: what a render farm calls. Frames on disk and the exit code are all that it sees."""
 
+import os
+
 import numpy as np
 from PIL import Image
 
@@ -90,3 +92,27 @@ def test_an_error_in_a_still_saves_nothing(blender, scene, tmp_path):
     assert done.returncode == 1
     assert "object 'Yarn'" in done.stdout
     assert names(tmp_path) == []
+
+
+THREADS = """
+import bpy, sys
+bpy.context.view_layer.objects.active = bpy.data.objects["Yarn"]
+bpy.data.objects["Yarn"].select_set(True)
+if {render}:
+    bpy.ops.render.render()
+bpy.ops.lisle.fibers_to_curves(for_camera=False)
+print("threads:", sys.modules["lisle"].threads())
+"""
+
+
+def test_threads_bound_pictures_and_tools(blender, scene):
+    """`-t` also bounds what is computed outside of renders."""
+
+    def threads(render, *options):
+        done = blender.run("-b", *options, scene("sound"), "--python-expr", THREADS.format(render=render))
+        assert done.returncode == 0 and "threads: " in done.stdout, done.stdout
+        return int(done.stdout.partition("threads: ")[2].split()[0])
+
+    assert threads(False, "-t", 1) == threads(True, "-t", 1) == 1
+    assert threads(True, "--threads", 3) == 3
+    assert threads(False) == len(os.sched_getaffinity(0))

@@ -98,6 +98,8 @@ pub(crate) const NO_PLANE: u32 = u32::MAX;
 
 /// Words of a pixel's place on its yarn or mesh, and of where it is on three pictures: `shaders/passes/aov.wgsl`.
 pub(crate) const VECTOR_WORDS: u32 = 11;
+/// The word of a mesh's triangle, from the vector's first plane on.
+pub(crate) const VECTOR_PARAMETER: u32 = 1;
 /// The first of the three words of a point of a mesh, render space, from the vector's first plane on.
 pub(crate) const VECTOR_PLACE: u32 = 2;
 /// The first of the two words of this frame, of the one before and of the one after, from there on.

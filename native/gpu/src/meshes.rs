@@ -21,6 +21,45 @@ struct Upload {
     first_position: u32,
     first_corner: u32,
     first_normal: u32,
+    /// At each time step of the picture; none where all are one.
+    shapes: Vec<Arc<Triangles>>,
+}
+
+impl Upload {
+    /// As the buffer holds them, on the way from one shape to another.
+    fn positions(&self, a: &Triangles, b: &Triangles, share: f64) -> Vec<[f32; 3]> {
+        let pairs = a.positions().par_iter().zip(b.positions());
+        pairs.map(|(a, b)| (point(a).lerp(point(b), share) - self.center).as_vec3().to_array()).collect()
+    }
+}
+
+fn point(p: &[f32; 3]) -> DVec3 {
+    Vec3::from(*p).as_dvec3()
+}
+
+/// Likewise, of normals at corners.
+fn normals(a: &Triangles, b: &Triangles, share: f64) -> Vec<u32> {
+    let [a, b] = [a, b].map(|triangles| triangles.normals().unwrap_or_default().as_flattened());
+    let pairs = a.par_iter().zip(b);
+    let mixed = pairs.map(|(a, b)| Vec3::from(*a).lerp(Vec3::from(*b), share as f32));
+    mixed.map(|n| pack_unit_vector(n.try_normalize().unwrap_or(Vec3::Z).to_array())).collect()
+}
+
+/// Whether one is the other with its corners moved.
+pub(crate) fn correspond(a: &Arc<Triangles>, b: &Arc<Triangles>) -> bool {
+    Arc::ptr_eq(a, b)
+        || (a.positions().len() == b.positions().len()
+            && a.triangles() == b.triangles()
+            && a.normals().is_some() == b.normals().is_some())
+}
+
+fn bounds(triangles: &Triangles) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    // Positions that no triangle has do not count.
+    triangles.triangles().iter().flatten().for_each(|corner| {
+        bounds.include(point(&triangles.positions()[*corner as usize]));
+    });
+    bounds
 }
 
 /// Buffers of the meshes, and what they hold.
@@ -49,8 +88,9 @@ impl MeshPlaces {
 }
 
 impl MeshBuffers {
-    /// Brings the GPU up to date, reusing what `previous` already holds.
-    pub fn update(gpu: &Gpu, previous: Option<Self>, scene: &Scene) -> Result<Self, Error> {
+    /// Brings the GPU up to date with the first of a picture's time steps, reusing what `previous` already holds.
+    pub fn update(gpu: &Gpu, previous: Option<Self>, steps: &[Scene]) -> Result<Self, Error> {
+        let scene = &steps[0];
         let mut distinct: Vec<&Arc<Triangles>> = Vec::new();
         let mut known = std::collections::HashMap::new();
         let which: Vec<usize> = scene
@@ -64,7 +104,9 @@ impl MeshBuffers {
             })
             .collect();
         let kept = previous.filter(|p| {
-            p.uploads.len() == distinct.len()
+            // One that moved in its picture is left somewhere on its way.
+            p.uploads.iter().all(|upload| upload.shapes.is_empty())
+                && p.uploads.len() == distinct.len()
                 && p.uploads.iter().zip(&distinct).all(|(upload, triangles)| Arc::ptr_eq(&upload.triangles, triangles))
         });
         let mut buffers = match kept {
@@ -77,55 +119,93 @@ impl MeshBuffers {
             return Err(Error::input("scene", "more than 1.43 billion triangles, instances counted each"));
         }
         (buffers.which, buffers.triangle_count) = (which, triangles as u32);
+        buffers.move_in(steps);
         Ok(buffers)
     }
 
+    /// Notes which geometries change their shape over the time steps of a picture. Instances move as the first of them.
+    fn move_in(&mut self, steps: &[Scene]) {
+        let all = |step: &&Scene| step.meshes.len() == steps[0].meshes.len();
+        if steps.len() < 2 || !steps.iter().all(|step| all(&step)) {
+            return;
+        }
+        for (place, upload) in self.uploads.iter_mut().enumerate() {
+            let Some(first) = self.which.iter().position(|which| *which == place) else { continue };
+            let shapes = steps.iter().map(|step| &step.meshes[first].triangles);
+            if shapes.clone().all(|shape| Arc::ptr_eq(shape, &upload.triangles))
+                || !shapes.clone().all(|shape| correspond(shape, &upload.triangles))
+            {
+                continue;
+            }
+            for shape in shapes {
+                let Bounds { min, max } = bounds(shape);
+                upload.bounds.merge(&Bounds { min: min - upload.center, max: max - upload.center });
+                upload.shapes.push(Arc::clone(shape));
+            }
+        }
+    }
+
+    /// Moves what changes its shape to a place between a time step and the next.
+    pub fn deform(&self, gpu: &Gpu, step: usize, share: f64) {
+        for upload in &self.uploads {
+            let Some([a, b]) = upload.shapes.get(step..step + 2) else { continue };
+            let positions = upload.positions(a, b, share);
+            gpu.queue.write_buffer(
+                &self.positions,
+                12 * u64::from(upload.first_position),
+                bytemuck::cast_slice(&positions),
+            );
+            if upload.first_normal != NONE {
+                let normals = normals(a, b, share);
+                gpu.queue.write_buffer(
+                    &self.normals,
+                    4 * u64::from(upload.first_normal),
+                    bytemuck::cast_slice(&normals),
+                );
+            }
+        }
+    }
+
     fn upload(gpu: &Gpu, distinct: &[&Arc<Triangles>]) -> Result<Self, Error> {
-        let (mut positions, mut corners, mut normals) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut positions, mut corners, mut at_corners) = (Vec::new(), Vec::new(), Vec::new());
         let mut uploads = Vec::with_capacity(distinct.len());
         for triangles in distinct {
-            let point = |p: &[f32; 3]| Vec3::from(*p).as_dvec3();
-            let mut bounds = Bounds::EMPTY;
-            // Positions that no triangle has do not count.
-            triangles.triangles().iter().flatten().for_each(|corner| {
-                bounds.include(point(&triangles.positions()[*corner as usize]));
-            });
+            let bounds = bounds(triangles);
             let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min + bounds.max) };
             let too_many = |_| Error::input("scene", "more than 4.29 billion corners of triangles");
             let place = |count: usize| u32::try_from(count).map_err(too_many);
-            uploads.push(Upload {
+            let upload = Upload {
                 triangles: Arc::clone(triangles),
                 center,
                 bounds: Bounds { min: bounds.min - center, max: bounds.max - center },
                 first_position: place(positions.len())?,
                 first_corner: place(3 * corners.len())?,
-                first_normal: if triangles.normals().is_some() { place(normals.len())? } else { NONE },
-            });
-            positions.par_extend(triangles.positions().par_iter().map(|p| (point(p) - center).as_vec3().to_array()));
+                first_normal: if triangles.normals().is_some() { place(at_corners.len())? } else { NONE },
+                shapes: Vec::new(),
+            };
+            positions.extend(upload.positions(triangles, triangles, 0.0));
             corners.extend_from_slice(triangles.triangles());
-            let of_triangles = triangles.normals().unwrap_or_default().as_flattened();
-            normals.par_extend(of_triangles.par_iter().map(|n| {
-                let unit = Vec3::from(*n).try_normalize().unwrap_or(Vec3::Z);
-                pack_unit_vector(unit.to_array())
-            }));
+            at_corners.extend(normals(triangles, triangles, 0.0));
+            uploads.push(upload);
         }
         Ok(Self {
             uploads,
             positions: storage(gpu, "positions of meshes", &positions)?,
             corners: storage(gpu, "triangles of meshes", &corners)?,
-            normals: storage(gpu, "normals of meshes", &normals)?,
+            normals: storage(gpu, "normals of meshes", &at_corners)?,
             which: Vec::new(),
             triangle_count: 0,
         })
     }
 
-    /// The meshes of a picture in the render space about an origin, world space.
-    pub fn place(&self, scene: &Scene, origin: DVec3) -> MeshPlaces {
+    /// The meshes of a picture, by their transforms to world space, in the render space about an origin.
+    pub fn place(&self, scene: &Scene, transforms: &[DMat4], origin: DVec3) -> MeshPlaces {
         let mut places = MeshPlaces::new();
         let mut first_triangle = 0;
-        for (mesh, upload) in scene.meshes.iter().zip(self.which.iter().map(|place| &self.uploads[*place])) {
+        let uploads = self.which.iter().map(|place| &self.uploads[*place]);
+        for ((mesh, world_from_object), upload) in scene.meshes.iter().zip(transforms).zip(uploads) {
             let render_from_object =
-                DMat4::from_translation(-origin) * mesh.world_from_object * DMat4::from_translation(upload.center);
+                DMat4::from_translation(-origin) * *world_from_object * DMat4::from_translation(upload.center);
             let row = |i: usize| render_from_object.row(i).as_vec4();
             places.items.push(layout::MeshDraw {
                 render_from_object_x: row(0),

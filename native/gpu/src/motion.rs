@@ -1,17 +1,21 @@
 //! What moves while the shutter is open, and where things are in the frames before and after.
 
-use glam::{DMat4, DVec3};
+use std::sync::Arc;
+
+use glam::{DMat4, DVec3, Vec3};
 use lisle_core::scene::between;
 
 use crate::device::Gpu;
+use crate::meshes::correspond;
 use crate::upload::{Draws, ObjectParts, Place, SceneBuffers, Shape, empty_storage};
 use crate::view::View;
 use crate::{Error, Mesh, Object, Scene};
 
 /// A scene at one or several times.
 ///
-/// Objects correspond by their order, and their yarns by their rest shape: [`lisle_core::strands::Yarns::with_points`]. Yarns, objects and
-/// camera move; all else is as at the first step.
+/// Objects and meshes correspond by their order, and their yarns by their rest shape: [`lisle_core::strands::Yarns::with_points`]. Yarns, objects,
+/// meshes and camera move; all else is as at the first step. Meshes stay where the steps have not as many, and keep their shape where their
+/// triangles differ.
 #[derive(Clone, Debug)]
 pub struct Exposure {
     /// The scene at even steps from when the shutter opens to when it closes, at least one; between them everything moves evenly. What
@@ -32,6 +36,8 @@ impl Exposure {
 pub(crate) struct Moment {
     pub view: View,
     pub draws: Draws,
+    /// World from object.
+    pub mesh_transforms: Vec<DMat4>,
 }
 
 /// The steps, ready to be drawn at any time between them.
@@ -48,8 +54,55 @@ pub(crate) struct Neighbour {
     pub moment: Moment,
     pub shape: Shape,
     pub draws: wgpu::Buffer,
-    /// From where each mesh is to where it is in that frame, world space; none if the frames have not as many.
-    mesh_moves: Vec<DMat4>,
+    /// None if the frames have not as many meshes.
+    mesh_moves: Vec<MeshMove>,
+}
+
+/// A mesh here and in another frame.
+struct MeshMove {
+    here: Mesh,
+    there: Mesh,
+}
+
+impl MeshMove {
+    /// Where a point of one of its triangles is in the other frame, world space.
+    fn follow(&self, triangle: usize, world: DVec3) -> DVec3 {
+        let object_from_world = self.here.world_from_object.inverse();
+        if !object_from_world.is_finite() {
+            return world;
+        }
+        let here = object_from_world.transform_point3(world);
+        let there = if Arc::ptr_eq(&self.here.triangles, &self.there.triangles) {
+            here
+        } else {
+            self.in_other_shape(triangle, here).unwrap_or(here)
+        };
+        self.there.world_from_object.transform_point3(there)
+    }
+
+    /// Object space.
+    fn in_other_shape(&self, triangle: usize, place: DVec3) -> Option<DVec3> {
+        if !correspond(&self.here.triangles, &self.there.triangles) {
+            return None;
+        }
+        let corners = self.here.triangles.triangles().get(triangle)?;
+        let [[a, b, c], [x, y, z]] = [&self.here, &self.there]
+            .map(|mesh| corners.map(|corner| Vec3::from(mesh.triangles.positions()[corner as usize]).as_dvec3()));
+        let normal = (b - a).cross(c - a);
+        let size = normal.length_squared();
+        if size == 0.0 {
+            return None;
+        }
+        let share = |from: DVec3, to: DVec3| (to - from).cross(place - from).dot(normal) / size;
+        let (of_b, of_c) = (share(c, a), share(a, b));
+        Some(x + (y - x) * of_b + (z - x) * of_c)
+    }
+}
+
+/// A mesh's transform between those of two steps; one that is flat has no rotation to keep.
+fn mesh_between(a: &DMat4, b: &DMat4, share: f64) -> DMat4 {
+    let mixed = between(a, b, share);
+    if mixed.is_finite() { mixed } else { *a * (1.0 - share) + *b * share }
 }
 
 /// Fails unless the objects of a scene are those of another, moved.
@@ -116,8 +169,19 @@ impl<'a> Motion<'a> {
             _ => buffers.shape.places.clone(),
         };
         let draws = buffers.draws(&self.steps[0], self.parts, view.origin, &transforms, &places)?;
-        Ok(Moment { view, draws })
+        let meshes = &self.steps[0].meshes;
+        let mesh_transforms = if self.steps.iter().all(|step| step.meshes.len() == meshes.len()) {
+            let pairs = a.meshes.iter().zip(&b.meshes);
+            pairs.map(|(a, b)| mesh_between(&a.world_from_object, &b.world_from_object, share)).collect()
+        } else {
+            transforms_of(meshes)
+        };
+        Ok(Moment { view, draws, mesh_transforms })
     }
+}
+
+fn transforms_of(meshes: &[Mesh]) -> Vec<DMat4> {
+    meshes.iter().map(|mesh| mesh.world_from_object).collect()
 }
 
 impl Moment {
@@ -131,7 +195,7 @@ impl Moment {
         let view = View::new(&scene.camera, size)?;
         let transforms: Vec<DMat4> = scene.objects.iter().map(|object| object.world_from_object).collect();
         let draws = buffers.draws(scene, parts, view.origin, &transforms, places)?;
-        Ok(Self { view, draws })
+        Ok(Self { view, draws, mesh_transforms: transforms_of(&scene.meshes) })
     }
 }
 
@@ -152,18 +216,15 @@ impl Neighbour {
         let items = &moment.draws.items;
         let draws = empty_storage(gpu, "instances in another frame", size_of_val(&items[..]) as u64)?;
         gpu.queue.write_buffer(&draws, 0, bytemuck::cast_slice(items));
-        let moved = |(here, there): (&Mesh, &Mesh)| {
-            let matrix = there.world_from_object * here.world_from_object.inverse();
-            if matrix.is_finite() { matrix } else { DMat4::IDENTITY }
-        };
+        let moved = |(here, there): (&Mesh, &Mesh)| MeshMove { here: here.clone(), there: there.clone() };
         let pairs = scene.meshes.iter().zip(&other.meshes);
         let mesh_moves = if scene.meshes.len() == other.meshes.len() { pairs.map(moved).collect() } else { Vec::new() };
         Ok(Self { moment, shape, draws, mesh_moves })
     }
 
-    /// Where a point of a mesh is on the picture of that frame, pixels; `None` if it is not before the camera.
-    pub fn mesh_pixel(&self, mesh: usize, world: DVec3) -> Option<[f64; 2]> {
-        let there = self.mesh_moves.get(mesh).map_or(world, |matrix| matrix.transform_point3(world));
+    /// Where a point of a mesh's triangle is on the picture of that frame, pixels; `None` if it is not before the camera.
+    pub fn mesh_pixel(&self, mesh: usize, triangle: usize, world: DVec3) -> Option<[f64; 2]> {
+        let there = self.mesh_moves.get(mesh).map_or(world, |moved| moved.follow(triangle, world));
         self.moment.view.pixel(there)
     }
 }

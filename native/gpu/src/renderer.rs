@@ -198,7 +198,7 @@ impl Drawing {
         listener.check()?;
         let (mut buffers, parts) = SceneBuffers::update(gpu, self.scene.take(), scene, &transports, tables)?;
         let sky = SkyBuffers::update(gpu, self.sky.take(), scene.environment.as_ref())?;
-        let meshes = MeshBuffers::update(gpu, self.meshes.take(), scene)?;
+        let meshes = MeshBuffers::update(gpu, self.meshes.take(), &exposure.steps)?;
         if mesh_pipelines.is_none() && !meshes.is_empty() {
             *mesh_pipelines = Some(MeshPipelines::new(gpu)?);
         }

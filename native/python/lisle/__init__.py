@@ -9,7 +9,7 @@ Lengths are metres (or the file's unit, where it has none), right-handed, Z up; 
 >>> image.save("glove.png")
 """
 
-from ._native import Adapter, Yarns, __version__, adapters, set_threads
+from ._native import Adapter, Yarns, __version__, adapters, set_threads, threads
 from .camera import Camera
 from .environment import Environment
 from .errors import Cancelled, DeviceError, Error, InputError
@@ -59,5 +59,6 @@ __all__ = [
     "load",
     "set_threads",
     "sweater",
+    "threads",
     "woven_swatch",
 ]

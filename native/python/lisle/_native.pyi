@@ -38,6 +38,7 @@ __all__ = [
     "save_png",
     "set_threads",
     "sweater",
+    "threads",
     "woven_flat",
     "yarn_preset",
     "yarn_presets",
@@ -177,8 +178,8 @@ class Renderer:
         ambient: tuple[float, float, float],
         environment: Environment | None,
         camera: Camera,
-        later: Sequence[tuple[Sequence[Object], Camera]],
-        neighbours: Sequence[tuple[Sequence[Object], Camera]],
+        later: Sequence[tuple[Sequence[Object], Sequence[tuple[Mesh, int]], Camera]],
+        neighbours: Sequence[tuple[Sequence[Object], Sequence[tuple[Mesh, int]], Camera]],
         settings: Mapping[str, Any],
         progress: Callable[[float], bool | None] | None,
     ) -> tuple[dict[str, npt.NDArray[Any]], dict[str, Any]]: ...
@@ -198,7 +199,7 @@ def reference(
     ambient: tuple[float, float, float],
     environment: Environment | None,
     camera: Camera,
-    later: Sequence[tuple[Sequence[Object], Camera]],
+    later: Sequence[tuple[Sequence[Object], Sequence[tuple[Mesh, int]], Camera]],
     settings: Mapping[str, Any],
     checkpoint: Path | None,
     progress: Callable[[float], bool | None] | None,
@@ -211,6 +212,9 @@ def save_exr(
 ) -> None: ...
 def set_threads(count: int) -> bool:
     """Threads for all that runs on the processor: tables and the path tracer. False once such work has begun."""
+
+def threads() -> int:
+    """How many there are of those."""
 
 def cryptomatte_hash(name: str) -> int: ...
 def check_yarn(yarn: Yarn) -> None: ...

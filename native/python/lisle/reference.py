@@ -117,7 +117,7 @@ class Reference:
         The same arguments give the same bits on any number of cores.
 
         Motion blur as by `Renderer.render`: a list stands for even steps over the time that the shutter is open. Each
-        sample has a time of its own. If more than the camera moves, fibers are made anew for each sample.
+        sample has a time of its own. Meshes stay where they are at the first step. If more than the camera moves, fibers are made anew for each sample.
 
         Args:
             what: yarns, with the next seven arguments; or a scene, which has them already; or a list, see above.
@@ -157,7 +157,7 @@ class Reference:
             scene.ambient,
             scene.environment,
             scene.camera,
-            [(step.objects, step.camera) for step in steps[1:]],
+            [(step.objects, step.numbered_meshes(), step.camera) for step in steps[1:]],
             {
                 "size": size,
                 "region": None if region is None else arguments.from_top_left(region, size),

@@ -75,9 +75,10 @@ class Renderer:
         """Draws yarns, or a scene.
 
         Motion blur: a list of scenes, or of shapes of the same yarns (`with_points`) and of cameras, stands for even
-        steps over the time that the shutter is open. Between them everything moves evenly. Objects correspond by their
-        order; lights are those of the first scene. What belongs to the pixel's centre, such as depth, is of the middle
-        of that time.
+        steps over the time that the shutter is open. Between them everything moves evenly. Objects and meshes
+        correspond by their order; meshes of other triangles keep their shape, and all stay where they are if a scene
+        has not as many. Lights are those of the first scene. What belongs to the pixel's centre, such as depth, is of
+        the middle of that time.
 
         Args:
             what: yarns, with the next seven arguments; or a scene, which has them already; or a list, see above.
@@ -133,8 +134,8 @@ class Renderer:
             scene.ambient,
             scene.environment,
             scene.camera,
-            [(step.objects, step.camera) for step in steps[1:]],
-            [(other.objects, other.camera) for other in neighbours],
+            [(step.objects, step.numbered_meshes(), step.camera) for step in steps[1:]],
+            [(other.objects, other.numbered_meshes(), other.camera) for other in neighbours],
             {
                 "size": size,
                 "region": None if region is None else arguments.from_top_left(region, size),

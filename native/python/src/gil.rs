@@ -29,6 +29,12 @@ pub fn set_threads(count: usize) -> bool {
     rayon::ThreadPoolBuilder::new().num_threads(count).build_global().is_ok()
 }
 
+/// Threads that work on the processor.
+#[pyfunction]
+pub fn threads() -> usize {
+    rayon::current_num_threads()
+}
+
 /// Python's word in a long call: the progress callback, and Ctrl-C.
 pub struct Listener {
     callback: Option<Py<PyAny>>,

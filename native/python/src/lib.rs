@@ -37,7 +37,7 @@ mod native {
     #[pymodule_export]
     use super::fabric::{knit_flat, knit_mesh, knit_sleeve, knit_tube, sweater, woven_flat};
     #[pymodule_export]
-    use super::gil::set_threads;
+    use super::gil::{set_threads, threads};
     #[pymodule_export]
     use super::load::load;
     #[pymodule_export]

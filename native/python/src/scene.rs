@@ -167,13 +167,14 @@ pub fn scene(
     })
 }
 
-/// What moves: objects and camera.
-pub type StepFields<'py> = (Vec<ObjectFields<'py>>, CameraFields);
+/// What moves: objects, meshes with their numbers, and camera.
+pub type StepFields<'py> = (Vec<ObjectFields<'py>>, Vec<(MeshFields, u32)>, CameraFields);
 
 /// A scene at another time.
-pub fn moved(scene: &Scene, (objects, camera): StepFields<'_>) -> Result<Scene, Failure> {
+pub fn moved(scene: &Scene, (objects, meshes, camera): StepFields<'_>) -> Result<Scene, Failure> {
     let objects = objects.into_iter().map(ObjectFields::object).collect::<Result<_, _>>()?;
-    Ok(Scene { objects, camera: camera.into(), ..scene.clone() })
+    let meshes = meshes.into_iter().map(|(fields, id)| fields.mesh(id)).collect();
+    Ok(Scene { objects, meshes, camera: camera.into(), ..scene.clone() })
 }
 
 /// A shading model by its name.

@@ -190,10 +190,10 @@ impl<'a> Recorder<'a> {
 
     /// From now on samples see the moment.
     fn show(&mut self) {
-        let Moment { view, draws } = &self.moment;
+        let Moment { view, draws, mesh_transforms } = &self.moment;
         let (depth_min, depth_max) = if draws.bounds.is_empty() { (0.0, 1.0) } else { view.depth_range(&draws.bounds) };
         self.gpu.queue.write_buffer(&self.frame.draws, 0, bytemuck::cast_slice(&draws.items));
-        self.mesh_places = self.input.meshes.place(self.input.scene, view.origin);
+        self.mesh_places = self.input.meshes.place(self.input.scene, mesh_transforms, view.origin);
         let items = bytemuck::cast_slice(&self.mesh_places.items);
         self.gpu.queue.write_buffer(&self.frame.mesh_draws, 0, items);
         self.uniform = layout::Frame {
@@ -206,12 +206,13 @@ impl<'a> Recorder<'a> {
         };
     }
 
-    /// Moves knots and camera to the time of a sample.
+    /// Moves knots, meshes and camera to the time of a sample.
     fn move_to(&mut self, time: f64) -> Result<(), Error> {
-        let FrameInput { motion, buffers, .. } = *self.input;
+        let FrameInput { motion, buffers, meshes, .. } = *self.input;
         self.moment = motion.at(buffers, time)?;
         self.show();
         let (step, share) = motion.step(time);
+        meshes.deform(self.gpu, step, share);
         if let Some([earlier, later]) = motion.shapes.get(step..step + 2) {
             let knots = buffers.knot_count();
             let numbers = [knots, (share as f32).to_bits(), 0, 0];

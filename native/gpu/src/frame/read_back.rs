@@ -57,19 +57,20 @@ impl Recorder<'_> {
             .into()
     }
 
-    /// How a pixel's point moves on the picture: a yarn's as the shaders have followed it, a mesh's with its transform.
+    /// How a pixel's point moves on the picture: a yarn's as the shaders have followed it, a mesh's with its triangle.
     fn vector(&self, planes: &aov::Tile, pixel: usize, draw: Option<usize>) -> [f32; 4] {
         let mesh = draw.and_then(|draw| draw.checked_sub(self.input.scene.objects.len()));
         let (Some(mesh), Some([before, after])) = (mesh, self.input.neighbours) else {
             return aov::vector(planes.yarn_pixels(pixel));
         };
         let place = Vec3::from(planes.values::<3>(planes.planes.vector + aov::VECTOR_PLACE, pixel));
+        let triangle = planes.word(planes.planes.vector + aov::VECTOR_PARAMETER, pixel) as usize;
         let world = self.first_view.origin + place.as_dvec3();
         self.first_view.pixel(world).map_or([0.0; 4], |here| {
             aov::vector([
                 here,
-                before.mesh_pixel(mesh, world).unwrap_or(here),
-                after.mesh_pixel(mesh, world).unwrap_or(here),
+                before.mesh_pixel(mesh, triangle, world).unwrap_or(here),
+                after.mesh_pixel(mesh, triangle, world).unwrap_or(here),
             ])
         })
     }
