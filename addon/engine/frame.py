@@ -150,6 +150,8 @@ def _native_shot(lisle, engine, depsgraph, frame_size, note, with_neighbours):
     if scene.meshes:
         for other, (there, _) in zip(others, moved, strict=True):
             other.meshes = SURFACES.moved(lisle, scene.meshes, content.meshes, there.meshes)
-        if shutter and depsgraph.scene.lisle.method == "REFERENCE":
+    if shutter and depsgraph.scene.lisle.method == "REFERENCE":
+        places = [mesh.order() for mesh in content.meshes]
+        if any([mesh.order() for mesh in there.meshes] != places for there, _ in moved):
             note("the path tracer does not blur meshes by motion")
     return _Shot(scene, others if shutter else [], others if around else [], pass_index_of)

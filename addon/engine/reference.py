@@ -3,7 +3,7 @@
 
 
 def draw(lisle, what, settings, **options):
-    """The lisle.Image of a lisle.Scene, or of a list of them over the shutter; `options` go to `lisle.Reference.render`."""
+    """The lisle.Image of a lisle.Scene, or of a list of them over the shutter; `options` go to `Reference.render`."""
     return lisle.Reference().render(
         what,
         samples=settings.reference_samples,

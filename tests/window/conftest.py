@@ -55,7 +55,8 @@ def artefacts():
 def any_window(request, blender, scene, tmp_path_factory):
     """A `window.Window` on each of Blender's graphics back ends; it lasts for the tests of a file.
 
-    Not for all: without Lisle as well, Blender's Vulkan back end crashes on Mesa's software driver after some hundreds of scenes.
+    Not for all: without Lisle as well, Blender's Vulkan back end crashes on Mesa's software driver after some hundreds
+    of scenes.
     """
     problem = window.Display.problem()
     if problem is not None:

@@ -117,7 +117,8 @@ class Reference:
         The same arguments give the same bits on any number of cores.
 
         Motion blur as by `Renderer.render`: a list stands for even steps over the time that the shutter is open. Each
-        sample has a time of its own. Meshes stay where they are at the first step. If more than the camera moves, fibers are made anew for each sample.
+        sample has a time of its own. Meshes stay where they are at the first step. If more than the camera moves,
+        fibers are made anew for each sample.
 
         Args:
             what: yarns, with the next seven arguments; or a scene, which has them already; or a list, see above.
