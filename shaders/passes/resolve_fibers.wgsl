@@ -21,14 +21,14 @@ fn to_chord(f: FiberPoint, t: f32, steps: u32) -> vec3f {
     return f.acceleration * (0.5 * in_step * (1.0 - in_step) / f32(steps * steps));
 }
 
-fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, index: u32, parts: KeyParts, pixel: vec2f) -> Surface {
+fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, pixel: vec2f) -> Surface {
     let t = f32(parts.place) / place_scale();
     let p = yarn_point(s, t);
     let q = ply_point(yarn, s, p, ply);
-    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), index));
+    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), rank));
     let scale = scale_of(yarn, s);
-    let width = width_factor(yarn, mix_detail(scale.ends, t), index, f.flyaway, f.taper);
-    let steps = fiber_steps(yarn, s, index / CHUNK * CHUNK, scale.radius_pixels);
+    let width = width_factor(yarn, mix_detail(scale.ends, t), rank, f.flyaway, f.taper);
+    let steps = fiber_steps(yarn, s, rank / CHUNK * CHUNK, scale.radius_pixels);
     let radius_pixels = max(pixels_at(f.position, yarn.fiber_radius * p.radius * width), 1e-20);
     let beside = select(vec3f(0.0), to_chord(f, t, steps), is_thin(radius_pixels));
     let at = to_pixel(frame.pixel_from_render, f.position + beside);

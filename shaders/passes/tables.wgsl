@@ -9,7 +9,7 @@ fn table_value(index: u32) -> f32 {
     return bitcast<f32>(tables[index]);
 }
 
-fn fiber_at(yarn: Yarn, ply: PlySeed, index: u32) -> Fiber {
-    let row = yarn.fiber_table + 3u * index;
-    return make_fiber(ply, index, vec3f(table_value(row), table_value(row + 1u), table_value(row + 2u)));
+fn fiber_at(yarn: Yarn, ply: PlySeed, rank: u32) -> Fiber {
+    let row = yarn.fiber_table + 4u * rank;
+    return make_fiber(ply, rank, vec4f(table_value(row), table_value(row + 1u), table_value(row + 2u), table_value(row + 3u)));
 }

@@ -116,9 +116,9 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         let t0 = f32(step - 1u) / f32(steps);
         let t1 = f32(step) / f32(steps);
         let end = screen_ply(yarn, s, scale.ends, t1, ply);
-        for (var index = first; index < last; index++) {
+        for (var rank = first; rank < last; rank++) {
             // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
-            let fiber = fiber_at(yarn, seed, index);
+            let fiber = fiber_at(yarn, seed, rank);
             let a = fiber_end(yarn, s, start, fiber);
             let b = fiber_end(yarn, s, end, fiber);
             if max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
@@ -128,7 +128,7 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
                 // Of its own width, the fiber is round: where it stands for several, it is flatter.
                 let thickness = line_lean(line, orthographic) / (max(a.width, 1.0) * frame.pixels_per_unit);
                 let stroke = Stroke(
-                    key_owner(segment, first_slot + index),
+                    key_owner(segment, first_slot + rank),
                     t0 * place_scale() + 0.5,
                     (t1 - t0) * place_scale(),
                     a.depth_rate / f32(steps) - chord,

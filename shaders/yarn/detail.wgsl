@@ -31,9 +31,9 @@ fn fiber_count(yarn: Yarn, detail: Detail) -> u32 {
 }
 
 // Factor on a fiber's width. Flyaways keep their area: the core leaves out as many fibers as are astray.
-fn width_factor(yarn: Yarn, detail: Detail, index: u32, flyaway: f32, taper: f32) -> f32 {
-    let inside = clamp(detail.fibers * f32(yarn.fibers) - f32(index), 0.0, 1.0);
-    let outside = clamp(detail.flyaways * f32(yarn.flyaway_fibers) - f32(index), 0.0, 1.0) / detail.flyaways;
+fn width_factor(yarn: Yarn, detail: Detail, rank: u32, flyaway: f32, taper: f32) -> f32 {
+    let inside = clamp(detail.fibers * f32(yarn.fibers) - f32(rank), 0.0, 1.0);
+    let outside = clamp(detail.flyaways * f32(yarn.flyaway_fibers) - f32(rank), 0.0, 1.0) / detail.flyaways;
     return taper * mix(inside, outside, flyaway);
 }
 

@@ -33,7 +33,8 @@ fn ply_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32) -> PlyPoint {
 
 // A row of the fiber table with what the ply adds to it.
 struct Fiber {
-    index: u32,
+    // In the order in which levels of detail draw them.
+    rank: u32,
     radius: f32,
     angle_turns: f32,
     migration_turns: f32,
@@ -56,8 +57,8 @@ fn ply_seed(seed: u32, ply: u32) -> PlySeed {
     );
 }
 
-fn make_fiber(ply: PlySeed, index: u32, row: vec3f) -> Fiber {
-    return Fiber(index, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, index));
+fn make_fiber(ply: PlySeed, rank: u32, row: vec4f) -> Fiber {
+    return Fiber(rank, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, u32(row.w)));
 }
 
 // The parts of a hair's period: a line never joins the tip to what lies beyond it.
@@ -71,11 +72,19 @@ struct Profile {
     radius_acceleration: f32,
     angle_turns: f32,
     angle_rate: f32,
-    // 1 for a loop or a hair.
+    // How far a loop or a hair is astray, 0 to 1.
     flyaway: f32,
     // Factor on the width: a hair thins out at its tip, and so does the end left in the ply.
     taper: f32,
     piece: u32,
+}
+
+// Relative radii between which a loop or a hair leaves its ply.
+const ASTRAY_BEGIN: f32 = 0.9;
+const ASTRAY_END: f32 = 1.1;
+
+fn astray(radius: f32) -> f32 {
+    return smoothstep(ASTRAY_BEGIN, ASTRAY_END, radius);
 }
 
 fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, hash: u32) -> Profile {
@@ -85,12 +94,12 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
     let inner = fiber.radius * yarn.r_min;
     var outer = fiber.radius;
     var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
-    if fiber.index < yarn.flyaway_fibers {
+    if fiber.rank < yarn.flyaway_fibers {
         let choice = unit_from_hash(hash);
         if choice < yarn.loop_chance {
             let draw = yarn.loop_radius_mean + yarn.loop_radius_deviation * normal_from_hash(hash_combine(hash, 1u));
             outer = max(draw, fiber.radius);
-            profile.flyaway = 1.0;
+            profile.flyaway = astray(inner + (outer - inner) * wave);
         } else if choice < yarn.loop_chance + yarn.hair_chance {
             let span = yarn.width_mean + yarn.width_deviation * normal_from_hash(hash_combine(hash, 2u));
             let width = clamp(abs(span), 0.04, 0.45);
@@ -101,14 +110,15 @@ fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, ha
                     + yarn.tip_span_mean + yarn.tip_span_deviation * normal_from_hash(hash_combine(hash, 4u));
                 let rise = max(tip, fiber.radius) - fiber.radius;
                 let turns = yarn.turns_mean + yarn.turns_deviation * normal_from_hash(hash_combine(hash, 5u));
-                let astray = direction * (turns - width / periods_per_turn);
+                let turned = direction * (turns - width / periods_per_turn);
+                let radius = fiber.radius + rise * along * along;
                 return Profile(
-                    fiber.radius + rise * along * along,
+                    radius,
                     2.0 * along * rise * direction / width,
                     2.0 * rise / (width * width),
-                    astray * along * along,
-                    2.0 * along * astray * direction / width,
-                    1.0,
+                    turned * along * along,
+                    2.0 * along * turned * direction / width,
+                    astray(radius),
                     1.0 - along * along * along * along,
                     PIECE_HAIR,
                 );

@@ -58,8 +58,10 @@ impl YarnTables {
     pub fn new(yarn: &Yarn, tables: &Tables) -> Self {
         let mut words = Words::default();
         let fibers = FiberTable::new(yarn);
-        let rows = (0..fibers.radius.len())
-            .flat_map(|i| [fibers.radius[i], fibers.angle_turns[i], fibers.migration_turns[i]].map(|x| x as f32));
+        let row = |i: usize| {
+            [fibers.radius[i], fibers.angle_turns[i], fibers.migration_turns[i], i as f64].map(|value| value as f32)
+        };
+        let rows = FiberTable::drawing_order(yarn).into_iter().flat_map(row);
         let fiber_table = words.append(rows);
         let core = &tables.core_fiber;
         let core_slope = core.texels.iter().flat_map(|t| [t[2].abs(), t[3].abs()]).fold(f32::MIN_POSITIVE, f32::max);

@@ -1,8 +1,10 @@
 use std::f64::consts::TAU;
 
 use lisle_core::sampling::{hash_combine, unit_from_hash};
-use lisle_core::yarn::{FiberTable, HAIR_WIDTH, Yarn};
+use lisle_core::yarn::{FiberTable, Yarn};
 use rayon::prelude::*;
+
+use crate::profile::astray_share;
 
 /// Height that marks a texel where no fiber is seen.
 pub const HOLE: f32 = -2.0;
@@ -30,7 +32,7 @@ const WIDTH: usize = 128;
 pub struct CoreFiber {
     /// View k is for T = e_N + (e_B − e_N) k / (views − 1).
     pub views: usize,
-    /// Layer l shows the fibers of rank ≥ m (l / layers)² of the fiber table; rank 0 is the outermost, where each counts most. Those astray are left out.
+    /// Layer l shows the fibers of rank ≥ m (l / layers)² in the order of [`FiberTable::drawing_order`], the outermost first. Those astray are left out.
     pub layers: usize,
     /// Turns after which they repeat.
     pub turns: usize,
@@ -75,13 +77,12 @@ impl Footprint {
 
 /// Which fibers of a ply the textures show: flyaways are drawn one by one while they are outside of the ply, so that only as many of
 /// the fibers that fly away are here as stay in it at a time.
-fn stays(yarn: &Yarn, fiber: usize) -> bool {
-    let (loops, hairs) = yarn.flyaway_chances();
-    let span = yarn.flyaways.hair_z_span;
-    // Mean of |x| for a normal variate about (nearly) zero.
-    let width = (span.deviation * (2.0 / std::f64::consts::PI).sqrt()).max(span.mean.abs()) / yarn.migration_period();
-    let away = loops + hairs * width.clamp(HAIR_WIDTH.0, HAIR_WIDTH.1);
-    fiber >= yarn.flyaway_fibers() as usize || unit_from_hash(hash_combine(0x57a7_1c0e, fiber as u32)) >= away
+fn staying(yarn: &Yarn, table: &FiberTable) -> Vec<bool> {
+    let stays = |fiber: usize| {
+        fiber >= yarn.flyaway_fibers() as usize
+            || unit_from_hash(hash_combine(0x57a7_1c0e, fiber as u32)) >= astray_share(yarn, table.radius[fiber])
+    };
+    (0..table.radius.len()).map(stays).collect()
 }
 
 /// First of `count` fibers that a layer shows.
@@ -127,6 +128,7 @@ impl CoreFiber {
         let half_width = 1.0 + footprints.iter().map(|f| f.width).fold(0.0, f64::max);
         let count = table.radius.len();
         let first_rank = |layer: usize| first_rank(layer, count);
+        let (staying, order) = (staying(yarn, table), FiberTable::drawing_order(yarn));
 
         // Innermost layer first: each next one adds fibers to a copy of the last.
         let row = |view: usize, k: usize| {
@@ -135,7 +137,7 @@ impl CoreFiber {
             let mut layers = vec![texels; LAYERS];
             for layer in (0..LAYERS).rev() {
                 let end = if layer + 1 == LAYERS { count } else { first_rank(layer + 1) };
-                for fiber in (first_rank(layer)..end).filter(|fiber| stays(yarn, *fiber)) {
+                for fiber in order[first_rank(layer)..end].iter().copied().filter(|fiber| staying[*fiber]) {
                     draw(&center(yarn, table, fiber, u), &footprints[view], half_width, &mut texels);
                 }
                 layers[layer] = texels;
@@ -209,6 +211,7 @@ mod tests {
     fn texels_show_the_front_fiber_of_their_layer() {
         let (yarn, table, texture) = texture("cotton-2");
         let mut random = Random::new(3);
+        let (staying, order) = (staying(&yarn, &table), FiberTable::drawing_order(&yarn));
         for _ in 0..4000 {
             let pick = |count: usize, x: f64| (count as f64 * x) as usize;
             let view = pick(VIEWS, random.unit());
@@ -218,7 +221,7 @@ mod tests {
             let v = ((j as f64 + 0.5) / WIDTH as f64 * 2.0 - 1.0) * f64::from(texture.half_width);
             let mut expected = [f64::from(HOLE), 0.0, 0.0, 0.0];
             let ranks = first_rank(layer, table.radius.len())..table.radius.len();
-            for fiber in ranks.filter(|fiber| stays(&yarn, *fiber)) {
+            for fiber in order[ranks].iter().copied().filter(|fiber| staying[*fiber]) {
                 let at = center(&yarn, &table, fiber, u);
                 let offset = (v - at.v) / footprint.half_span(&at);
                 let height = at.h + footprint.depth * (1.0 - offset * offset).max(0.0).sqrt();
@@ -259,10 +262,11 @@ mod tests {
         let length_of_turn = yarn.fiber_twist.abs();
         let reach = 2.0 * yarn.fiber_radius / length_of_turn;
         let mut random = Random::new(9);
+        let staying = staying(yarn, table);
         let covered = (0..RAYS).filter(|_| {
             let (u, v) = (TURNS as f64 * random.unit(), (2.0 * random.unit() - 1.0) * half_width);
             let across = v * a * b / depth;
-            (0..table.radius.len()).filter(|fiber| stays(yarn, *fiber)).any(|fiber| {
+            (0..table.radius.len()).filter(|fiber| staying[*fiber]).any(|fiber| {
                 (-20..=20).any(|k| {
                     let along = f64::from(k) / 20.0 * reach;
                     let at = center(yarn, table, fiber, u + along);

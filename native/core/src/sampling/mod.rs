@@ -5,8 +5,10 @@ mod filter;
 mod hash;
 mod random;
 mod sequence;
+mod spread;
 
 pub use filter::{Filter, PixelFilter};
 pub use hash::{hash_combine, hash_u32, normal_from_hash, unit_from_hash};
 pub use random::Random;
 pub use sequence::{Use, basis, concentric_disc, disc, pair, sphere};
+pub use spread::even_ranks;

@@ -145,6 +145,15 @@ struct Profile {
     beyond_tip: bool,
 }
 
+/// Relative radii between which a loop or a hair leaves its ply: it counts as astray by half at the ply's border.
+const ASTRAY: (f64, f64) = (0.9, 1.1);
+
+/// How far a loop or a hair at a relative radius is astray, 0 to 1. As far as it is not, a level of detail leaves it to what stands for the ply's own fibers.
+pub fn astray(radius: f64) -> f64 {
+    let x = ((radius - ASTRAY.0) / (ASTRAY.1 - ASTRAY.0)).clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
 /// Narrowest and widest hair, as a share of its period.
 pub const HAIR_WIDTH: (f64, f64) = (0.04, 0.45);
 

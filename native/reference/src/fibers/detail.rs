@@ -1,6 +1,7 @@
 //! Fewer fibers where a view does not tell them apart.
 
 use glam::DVec3;
+use lisle_core::sampling::even_ranks;
 use lisle_core::view::View;
 use lisle_core::yarn::{FiberTable, Segment, Yarn};
 
@@ -26,7 +27,7 @@ pub(super) struct CurveDetail {
     /// Chord error at the nearer end of every segment, units of length.
     chord_errors: Vec<f64>,
     /// Rank of each fiber of a ply: the first ranks remain.
-    ranks: Vec<f64>,
+    ranks: Vec<usize>,
 }
 
 impl CurveDetail {
@@ -51,14 +52,14 @@ impl CurveDetail {
             .map(|segment| (at(segment, 0.0), at(segment, 1.0)))
             .map(|(a, b)| ([a.0, b.0], a.1.min(b.1)))
             .unzip();
-        Self { shares, chord_errors, ranks: ranks(table.radius.len()) }
+        Self { shares, chord_errors, ranks: even_ranks(table.radius.len()) }
     }
 
     /// Factor on the width of a fiber at a place on a segment.
     pub fn width(&self, segment: usize, t: f64, index: u32) -> f64 {
         let [a, b] = self.shares[segment];
         let share = a + (b - a) * t;
-        (share * self.ranks.len() as f64 - self.ranks[index as usize]).clamp(0.0, 1.0) / share
+        (share * self.ranks.len() as f64 - self.ranks[index as usize] as f64).clamp(0.0, 1.0) / share
     }
 
     /// Whether a fiber is nowhere on a segment.
@@ -69,30 +70,5 @@ impl CurveDetail {
     /// Chord error on a segment, units of length.
     pub fn chord_error(&self, segment: usize) -> f64 {
         self.chord_errors[segment]
-    }
-}
-
-/// An order of so many fibers of which every beginning is spread evenly: that of the first multiples of the golden section.
-fn ranks(count: usize) -> Vec<f64> {
-    const GOLDEN: f64 = 0.618_033_988_749_895;
-    let place = |rank: usize| (0.5 + rank as f64 * GOLDEN).fract();
-    let mut ranks: Vec<usize> = (0..count).collect();
-    ranks.sort_by(|a, b| place(*a).total_cmp(&place(*b)));
-    ranks.into_iter().map(|rank| rank as f64).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_beginning_of_the_order_is_spread_over_the_section() {
-        for count in [33, 75, 150] {
-            let ranks = ranks(count);
-            for kept in [count / 8, count / 3, count / 2] {
-                let mean = (0..count).filter(|i| ranks[*i] < kept as f64).sum::<usize>() as f64 / kept as f64;
-                assert!((mean / (count as f64 - 1.0) - 0.5).abs() < 0.1, "{kept} of {count}: {mean}");
-            }
-        }
     }
 }
