@@ -146,7 +146,8 @@ struct Yarn {
     seen_sky_size: u32,
     // Share of the light on the yarn that goes through between its fibers.
     through_circle: f32,
-    padding: u32,
+    // The core texture's heights once more, two to a word: visibility wants nothing else of it, and waits for memory.
+    core_heights: u32,
 }
 
 struct Material {

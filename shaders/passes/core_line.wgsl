@@ -74,12 +74,17 @@ struct CoreSurface {
     offset: f32,
 }
 
-fn core_surface_at(texel: u32) -> CoreSurface {
-    let values = unpack2x16snorm(tables[texel]);
+fn core_surface_at(yarn: Yarn, texel: u32) -> CoreSurface {
+    let values = unpack2x16snorm(tables[yarn.core_table + 2u * texel]);
     return CoreSurface(2.0 * values.x, values.y);
+}
+
+// The height alone.
+fn core_height_at(yarn: Yarn, texel: u32) -> f32 {
+    return 2.0 * unpack2x16snorm(tables[yarn.core_heights + texel / 2u] >> (16u * (texel & 1u))).x;
 }
 
 // d(h, v) / d theta of the visible fiber.
 fn core_slopes_at(yarn: Yarn, texel: u32) -> vec2f {
-    return yarn.core_slope * unpack2x16snorm(tables[texel + 1u]);
+    return yarn.core_slope * unpack2x16snorm(tables[yarn.core_table + 2u * texel + 1u]);
 }

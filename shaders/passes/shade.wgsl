@@ -1,4 +1,4 @@
-// Shading of a point on a fiber: shared by the two resolve passes.
+// Shading of a point on a fiber: shared by the two resolve passes. Loops are as in visibility_fibers.wgsl.
 
 struct Surface {
     tube: Tube,
@@ -64,7 +64,11 @@ struct Around {
 fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, hidden: vec3f, even: vec3f) -> Around {
     var around: Around;
     let share = 1.0 / f32(max(frame.sky_view_count, 1u));
-    for (var i = 0u; i < frame.sky_view_count; i++) {
+    if frame.sky_view_count == 0u {
+        return around;
+    }
+    var i = 0u;
+    loop {
         let direction = sky_direction(frame.sky_view + i);
         let shadow = sky_open(frame.sky_view + i, direction, surface.tube, surface.position);
         let by_yarns = (1.0 - shadow.open - shadow.solid) * (1.0 - yarn.through_circle);
@@ -75,8 +79,29 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
             around.sky += (share * open) * scattered;
             around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
         }
+        i++;
+        if i >= frame.sky_view_count {
+            break;
+        }
     }
     return around;
+}
+
+// Radiance of other yarns under a light in that direction, per irradiance.
+fn neighbours_radiance(transport: u32, around: Around, direction: vec3f) -> vec3f {
+    var sum = vec3f(0.0);
+    if frame.sky_view_count == 0u {
+        return sum;
+    }
+    var k = 0u;
+    loop {
+        sum += around.yarns[k] * yarn_radiance(transport, -dot(sky_direction(frame.sky_view + k), direction));
+        k++;
+        if k >= frame.sky_view_count {
+            break;
+        }
+    }
+    return sum;
 }
 
 // Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
@@ -151,11 +176,16 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     }
     let around = look_around(yarn, surface, seen, transport, hidden, even);
     var shaded: Shaded;
-    for (var i = 0u; i < frame.light_count; i++) {
+    var i = 0u;
+    loop {
         let light = lights[i];
+        i++;
         let incident = incident_light(light, surface.position);
-        if all(incident.irradiance <= vec3f(0.0)) {
-            continue;
+        if i > frame.light_count || all(incident.irradiance <= vec3f(0.0)) {
+            if i < frame.light_count {
+                continue;
+            }
+            break;
         }
         let own = self_shadows(yarn, seen, incident.direction);
         let passing = passing_light(yarn, albedo.through, light, incident, surface.tube, surface.position);
@@ -177,10 +207,10 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
             let arriving = incident.irradiance * (blurred.straight + blurred.spread);
             shaded.scattered += transport_radiance(transport, section, incident.direction) * arriving * hidden;
             // Neighbours have the irradiance of this yarn.
-            for (var k = 0u; k < frame.sky_view_count; k++) {
-                let cosine = -dot(sky_direction(frame.sky_view + k), incident.direction);
-                shaded.scattered += around.yarns[k] * yarn_radiance(draws[draw].transport, cosine) * arriving * gain;
-            }
+            shaded.scattered += neighbours_radiance(draws[draw].transport, around, incident.direction) * arriving * gain;
+        }
+        if i >= frame.light_count {
+            break;
         }
     }
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);

@@ -1,4 +1,5 @@
 // How it works: one thread draws the core fibers of one segment. A pixel takes the height of its texel, or nothing in a hole.
+// Loops are as in visibility_fibers.wgsl.
 
 fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
     let orthographic = frame.viewer.w > 0.5;
@@ -10,24 +11,33 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
     let chord = b.depth - a.depth;
     let owner = key_owner(segment, slot);
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    for (var i = first_turn(walk.first, parts); i <= walk.last; i += i32(parts.count)) {
-        let span = line_span(walk, i);
-        for (var j = span.x; j <= span.y; j++) {
-            let pixel = select(vec2i(j, i), vec2i(i, j), walk.flat);
-            let hit = core_hit(a, b, vec2f(pixel) + 0.5);
-            if !hit.covered || abs(hit.v) > yarn.core_half_width {
-                continue;
-            }
+    var i = first_turn(walk.first, parts);
+    var span = line_span(walk, i);
+    loop {
+        let pixel = select(vec2i(span.x, i), vec2i(i, span.x), walk.flat);
+        let hit = core_hit(a, b, vec2f(pixel) + 0.5);
+        if i <= walk.last && span.x <= span.y && hit.covered && abs(hit.v) <= yarn.core_half_width {
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
             let chosen = core_texture(yarn, hit.depth_share, detail.fibers, core_chance(vec2u(pixel)));
-            let height = core_surface_at(core_texel(yarn, chosen, hit.turns, hit.v)).height;
-            if height < -1.5 {
-                continue;
+            let height = core_height_at(yarn, core_texel(yarn, chosen, hit.turns, hit.v));
+            var key = Key(0u, 0u);
+            if height >= -1.5 {
+                let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
+                let behind = depth_beyond_chord(a.depth_rate * (t1 - t0) - chord, b.depth_rate * (t1 - t0) - chord, hit.t);
+                let depth = line_depth(line, line_share(line, hit.t)) + behind - nearer;
+                key = make_key(owner, depth, step);
             }
-            let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
-            let behind = depth_beyond_chord(a.depth_rate * (t1 - t0) - chord, b.depth_rate * (t1 - t0) - chord, hit.t);
-            let depth = line_depth(line, line_share(line, hit.t)) + behind - nearer;
-            store_key(tile_index(pixel), make_key(owner, depth, step));
+            if key.high != 0u {
+                store_key(tile_index(pixel), key);
+            }
+        }
+        span.x++;
+        if span.x > span.y {
+            i += i32(parts.count);
+            span = line_span(walk, i);
+        }
+        if i > walk.last {
+            break;
         }
     }
 }
@@ -51,9 +61,11 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
         return;
     }
     let steps = core_steps(yarn, s, scale.radius_pixels);
-    for (var ply = 0u; ply < yarn.plies; ply++) {
+    var ply = 0u;
+    loop {
         var previous = core_end(core_point(yarn, s, yarn_point(s, 0.0), ply, frame.viewer));
-        for (var step = 1u; step <= steps; step++) {
+        var step = 1u;
+        loop {
             let t = f32(step) / f32(steps);
             let next = core_end(core_point(yarn, s, yarn_point(s, t), ply, frame.viewer));
             if min(previous.depth, next.depth) > frame.near {
@@ -61,6 +73,14 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
                 draw_core(yarn, Parts(frame.core_parts, workgroup.z), scale.ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
             }
             previous = next;
+            step++;
+            if step > steps {
+                break;
+            }
+        }
+        ply++;
+        if ply >= yarn.plies {
+            break;
         }
     }
 }

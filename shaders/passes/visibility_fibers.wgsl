@@ -1,5 +1,8 @@
 // How it works: one thread draws a chunk of one ply's fibers along one segment, each as a chain of round-ended lines rasterised in software; each
 // covered pixel keeps the largest key, that is the nearest fiber.
+//
+// Loops end with the test whether to go on: where it comes first, as a `for` has it, a software driver goes through the body once more, with no
+// thread left, since it skips nothing.
 
 @group(0) @binding(14) var<storage, read> dispatch: array<u32, 8>;
 
@@ -38,18 +41,26 @@ fn draw_line(line: Line, stroke: Stroke, parts: Parts) {
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
     var i = first_turn(walk.first, parts);
     var span = line_span(walk, i);
-    while i <= walk.last {
-        if span.x <= span.y {
+    loop {
+        if i <= walk.last && span.x <= span.y {
             let pixel = select(vec2i(span.x, i), vec2i(i, span.x), walk.flat);
             let hit = line_hit(line, vec2f(pixel) + 0.5);
+            // The software driver stores one thread's key after the other: chosen before, it is made for all of them at once.
+            var key = Key(0u, 0u);
             if hit.covered {
-                store_key(tile_index(pixel), stroke_key(line, stroke, hit));
+                key = stroke_key(line, stroke, hit);
+            }
+            if key.high != 0u {
+                store_key(tile_index(pixel), key);
             }
         }
         span.x++;
         if span.x > span.y {
             i += i32(parts.count);
             span = line_span(walk, i);
+        }
+        if i > walk.last {
+            break;
         }
     }
 }
@@ -112,16 +123,18 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let first_slot = ply * (yarn.fibers + 1u) + 1u;
     let orthographic = frame.viewer.w > 0.5;
     var start = screen_ply(yarn, s, scale.ends, 0.0, ply);
-    for (var step = 1u; step <= steps; step++) {
+    var step = 1u;
+    loop {
         let t0 = f32(step - 1u) / f32(steps);
         let t1 = f32(step) / f32(steps);
         let end = screen_ply(yarn, s, scale.ends, t1, ply);
-        for (var rank = first; rank < last; rank++) {
+        var rank = first;
+        loop {
             // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
             let fiber = fiber_at(yarn, seed, rank);
             let a = fiber_end(yarn, s, start, fiber);
             let b = fiber_end(yarn, s, end, fiber);
-            if max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
+            if rank < last && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
                 && joined(a.piece, a.period, b.piece, b.period) {
                 let line = make_line(a.line, b.line, orthographic);
                 let chord = b.line.depth - a.line.depth;
@@ -138,7 +151,15 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
                 );
                 draw_line(line, stroke, parts);
             }
+            rank++;
+            if rank >= last {
+                break;
+            }
         }
         start = end;
+        step++;
+        if step > steps {
+            break;
+        }
     }
 }

@@ -92,11 +92,11 @@ fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -
     );
 }
 
-// Where a texel's two words begin in the table buffer.
+// A texel's number in the texture.
 fn core_texel(yarn: Yarn, texture: CoreTexture, turns: f32, v: f32) -> u32 {
     let u_texel = min(u32(fract(turns / f32(yarn.core_turns)) * f32(yarn.core_length)), yarn.core_length - 1u);
     let v_share = 0.5 + 0.5 * v / yarn.core_half_width;
     let v_texel = u32(clamp(v_share * f32(yarn.core_width), 0.0, f32(yarn.core_width - 1u)));
     let row = (texture.view * yarn.core_layers + texture.layer) * yarn.core_length + u_texel;
-    return yarn.core_table + 2u * (row * yarn.core_width + v_texel);
+    return row * yarn.core_width + v_texel;
 }

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use lisle_gpu::{Error, Renderer, Scene, Settings, Statistics};
+use lisle_gpu::{Error, Progress, Renderer, Scene, Settings, Statistics};
 
 /// A picture's cost. Times are per sample.
 pub struct Measurement {
@@ -60,8 +60,11 @@ pub fn picture(renderer: &Renderer, scene: &Scene, settings: &Settings) -> Resul
     let mut stamps = Vec::with_capacity(settings.samples as usize + 1);
     let watch = Stopwatch::start();
     stamps.push(Instant::now());
-    let image = renderer.render(scene, settings, &mut |_| {
-        stamps.push(Instant::now());
+    let image = renderer.render(scene, settings, &mut |progress| {
+        // It is asked meanwhile, too.
+        if matches!(progress, Progress::Samples { done, .. } if done as usize == stamps.len()) {
+            stamps.push(Instant::now());
+        }
         ControlFlow::Continue(())
     })?;
     let (wall_s, cpu_s, noise) = watch.stop();

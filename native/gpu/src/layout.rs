@@ -150,7 +150,7 @@ shared! {
         seen_sky_table: u32,
         seen_sky_size: u32,
         through_circle: f32,
-        padding: u32,
+        core_heights: u32,
     }
     Material {
         color_r: Vec3,

@@ -47,7 +47,7 @@ impl Words {
     }
 }
 
-/// A kind of yarn as the shaders read it: 13 MiB, mostly of its core texture.
+/// A kind of yarn as the shaders read it: 16 MiB, mostly of its core texture.
 pub(crate) struct YarnTables {
     words: Words,
     /// Its offsets are from the first of these words.
@@ -68,6 +68,8 @@ impl YarnTables {
         let core_table = words.append_words(core.texels.iter().flat_map(|[height, offset, dh, dv]| {
             [pack_snorm([0.5 * height, *offset]), pack_snorm([dh / core_slope, dv / core_slope])]
         }));
+        let core_heights = words
+            .append_words(core.texels.chunks(2).map(|two| pack_snorm([0, two.len() - 1].map(|i| 0.5 * two[i][0]))));
         let shadow_table = words.append(tables.self_shadow.optical_depth.iter().copied());
         let extinction_table = words.append(tables.self_shadow.extinction.iter().copied());
         let seen_sky_table = words.append(tables.self_shadow.seen_sky.iter().copied());
@@ -128,7 +130,7 @@ impl YarnTables {
             seen_sky_table,
             seen_sky_size: tables.self_shadow.seen_sky_size as u32,
             through_circle: tables.self_shadow.through_circle,
-            padding: 0,
+            core_heights,
         };
         words.0.shrink_to_fit();
         Self { words, kind }
@@ -150,6 +152,7 @@ impl TableBuffer {
         self.yarns.push(layout::Yarn {
             fiber_table: first + kind.fiber_table,
             core_table: first + kind.core_table,
+            core_heights: first + kind.core_heights,
             shadow_table: first + kind.shadow_table,
             extinction_table: first + kind.extinction_table,
             seen_sky_table: first + kind.seen_sky_table,
@@ -271,7 +274,7 @@ impl TableCache {
     }
 
     /// Keeps what was used last: as much as a scene of so many needs, and for whoever tries one after the other, or has several views, at least
-    /// eight kinds of yarn, 13 MiB each, and 16 tables of multiple scattering, 1.5 MiB each, of which drafts have their own.
+    /// eight kinds of yarn, 16 MiB each, and 16 tables of multiple scattering, 1.5 MiB each, of which drafts have their own.
     pub fn forget(&mut self, yarns: usize, transports: usize) {
         self.yarns.forget(yarns.max(8));
         self.transports.forget((2 * transports).max(16));
@@ -358,6 +361,23 @@ mod tests {
             for (a, b) in color.iter().zip(unpack(pack_shared_exponent(color))) {
                 assert!((a - b).abs() <= most / 511.0, "{color:?}: {b}");
             }
+        }
+    }
+
+    #[test]
+    fn heights_are_those_of_the_core_texture() {
+        let mut buffer = TableBuffer::default();
+        for name in ["cotton-1", "silk-2"] {
+            let yarn = Yarn::preset(name).expect("preset");
+            buffer.add_yarn(&YarnTables::new(&yarn, &Tables::new(&yarn)));
+        }
+        for kind in &buffer.yarns {
+            let words = &buffer.words.0;
+            let count = kind.core_views * kind.core_layers * kind.core_length * kind.core_width;
+            let height = |texel: u32| words[(kind.core_heights + texel / 2) as usize] >> (16 * (texel & 1)) & 0xffff;
+            let texture = |texel: u32| words[(kind.core_table + 2 * texel) as usize] & 0xffff;
+            assert!((0..count).all(|texel| height(texel) == texture(texel)));
+            assert!((1..count).any(|texel| texture(texel) != texture(0)));
         }
     }
 }
