@@ -13,12 +13,15 @@ import lisle
 import models
 import page
 
+FLICKER_SAMPLES = 8
+"""Of each picture by which flicker is measured: a product of two seeds has no bias from noise."""
+
 
 def main() -> None:
     """Draws, measures, and writes the page anew after each case, so that a run that is stopped leaves what it has."""
     parser = argparse.ArgumentParser(prog="cargo xtask fidelity", description=__doc__)
     parser.add_argument("--full", action="store_true", help="the whole product of the set: many hours")
-    parser.add_argument("--samples", type=int, default=32, help="of each picture (default 32)")
+    parser.add_argument("--samples", type=int, default=256, help="of each picture (default 256)")
     parser.add_argument("--filter", default="", help="only cases whose line has this text")
     parser.add_argument("--out", type=Path, default=models.REPOSITORY / "out" / "fidelity")
     arguments = parser.parse_args()
@@ -39,10 +42,6 @@ def main() -> None:
     start = time.monotonic()
     hot_spot = compare.hot_spot(renderer, arguments.samples)
     print(page.markdown(page.HOT_SPOT_COLUMNS, [page.hot_spot_row(*each) for each in hot_spot]), flush=True)
-    flickers = []
-    for found in flicker.flicker(renderer, arguments.samples):
-        flickers.append(found)
-        print(page.markdown(page.FLICKER_COLUMNS, [page.flicker_row(found)]), flush=True)
     results: list[compare.Result] = []
     made: dict[str, lisle.Yarns] = {}
     for case in cases:
@@ -57,7 +56,14 @@ def main() -> None:
             f"{page.percent(multiple.mean_error)} %, FLIP {multiple.flip:.3f}",
             flush=True,
         )
+        page.write(arguments.out, notes, results, hot_spot, [])
+    flickers = []
+    for found in flicker.flicker(renderer, FLICKER_SAMPLES):
+        flickers.append(found)
+        print(page.markdown(page.FLICKER_COLUMNS, [page.flicker_row(found)]), flush=True)
         page.write(arguments.out, notes, results, hot_spot, flickers)
+    print(page.markdown(page.GOAL_COLUMNS, page.goal_rows(results, flickers)))
+    print(f"{time.monotonic() - start:.0f} s")
     print(arguments.out / "index.html")
 
 

@@ -16,6 +16,9 @@ SPAN = 48.0
 VIEWS = {"near": (6.0, 96), "middle": (24.0, 96), "far": (40.0, 48)}
 """Height of the picture, and its pixels: a yarn is 32, 8 and 2.4 pixels wide."""
 
+PART = 48
+"""Side of the middle of a picture in which light of all orders is compared, pixels: it takes many more samples."""
+
 SUNS = {"front": (0.3, -0.4, -1.0), "back": (0.2, -0.4, 1.0), "grazing": (1.0, -0.2, -0.15)}
 """Directions in which light travels, along the picture's right, its top, and towards the camera."""
 

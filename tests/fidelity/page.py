@@ -46,6 +46,8 @@ FLICKER_COLUMNS = (
     "lengths anew in each frame %",
 )
 
+GOAL_COLUMNS = ("goal", "cases", "met", "root mean square", "worst")
+
 Row = Sequence[str]
 
 
@@ -79,6 +81,34 @@ def flicker_row(found: Flicker) -> Row:
         *(f"{100 * number:.2f}" for number in numbers),
         percent(found.renderer / found.reference - 1),
         f"{100 * found.anew:.2f}",
+    ]
+
+
+def goal_rows(results: list[Result], flickers: list[Flicker]) -> list[Row]:
+    """Of `GOAL_COLUMNS`: how many cases meet each goal."""
+
+    def row(name: str, found: list[float], most: float, scale: float = 1.0, unit: str = "") -> Row:
+        values = np.array(found)
+        if not found:
+            return [name, "0", "–", "–", "–"]
+        worst = values[np.argmax(np.abs(values))]
+        root = np.sqrt(np.mean(values**2))
+        numbers = (f"{scale * root:.3g}{unit}", f"{scale * worst:.3g}{unit}")
+        return [name, str(len(found)), str(int((np.abs(values) <= most).sum())), *numbers]
+
+    def percents(name: str, found: list[float], most: float) -> Row:
+        return row(name, found, most, 100.0, " %")
+
+    near = [r.single.flip for r in results if r.case.view == "near"]
+    far = [r.single.flip for r in results if r.case.view == "far"]
+    return [
+        percents("scattered once: mean colour within 2 %", [r.single.mean_error for r in results], 0.02),
+        row("scattered once: FLIP at most 0.05 near", near, 0.05),
+        row("scattered once: FLIP at most 0.03 far", far, 0.03),
+        percents("all orders: mean colour within 4 %", [r.multiple.mean_error for r in results], 0.04),
+        row("all orders: FLIP at most 0.08", [r.multiple.flip for r in results], 0.08),
+        percents("far pictures within 2 % of every fiber's", [r.detail for r in results if r.case.view == "far"], 0.02),
+        percents("flicker at most 10 % beyond the reference's", [f.renderer / f.reference - 1 for f in flickers], 0.1),
     ]
 
 
@@ -134,12 +164,20 @@ def write(
     rows = [row(result) for result in results]
     sun_rows = [hot_spot_row(*each) for each in hot_spot]
     flicker_rows = [flicker_row(found) for found in flickers]
+    goals = goal_rows(results, flickers)
     body = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Fidelity</title><style>{STYLE}</style>
-<h1>Fidelity</h1><pre>{html.escape(notes)}</pre><p>{GOALS}</p>{_table(COLUMNS, rows)}
+<h1>Fidelity</h1><pre>{html.escape(notes)}</pre><p>{GOALS}</p>{_table(GOAL_COLUMNS, goals)}{_table(COLUMNS, rows)}
 <h2>Self-shadow against the angle between light and view</h2>{_table(HOT_SPOT_COLUMNS, sun_rows)}
 <h2>Change from frame to frame</h2>{_table(FLICKER_COLUMNS, flicker_rows)}
 <h2>Pictures</h2><p>Reference; picture; difference, red too bright, blue too dark; FLIP.</p>{"".join(figures)}</html>"""
     (folder / "index.html").write_text(body, encoding="utf-8")
-    tables = [(COLUMNS, rows), (HOT_SPOT_COLUMNS, sun_rows), (FLICKER_COLUMNS, flicker_rows)]
-    text = "\n".join([f"{notes}\n", *(markdown(*table) for table in tables)])
+    once, all_orders = COLUMNS[:12], ("case", "mean %", *COLUMNS[13:])
+    tables = [
+        ("Goals", GOAL_COLUMNS, goals),
+        ("Scattered once", once, [each[:12] for each in rows]),
+        ("All orders of light", all_orders, [[each[0], *each[12:]] for each in rows]),
+        ("By the angle between sun and camera", HOT_SPOT_COLUMNS, sun_rows),
+        ("Flicker", FLICKER_COLUMNS, flicker_rows),
+    ]
+    text = "\n".join([f"{notes}\n", *(f"### {title}\n\n{markdown(*table)}" for title, *table in tables)])
     (folder / "tables.md").write_text(text, encoding="utf-8")
