@@ -30,6 +30,15 @@ def cut_channels(image, first, count):
     return np.pad(found, ((0, 0), (0, 0), (0, missing))) if missing else found
 
 
+LINEAR_SPACES = {"Linear Rec.709", "Linear", "Non-Color", "scene_linear"}
+"""Colour spaces whose 8-bit numbers are light as they are."""
+
+
+def srgb_from_linear(values):
+    """Display codes in 0 to 1 of light, IEC 61966-2-1."""
+    return np.where(values <= 0.0031308, values * 12.92, 1.055 * np.maximum(values, 0.0) ** (1 / 2.4) - 0.055)
+
+
 def linear_from_srgb(values):
     """Light of display codes in 0 to 1, IEC 61966-2-1; float32."""
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4).astype(np.float32)

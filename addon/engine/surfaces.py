@@ -17,9 +17,7 @@ class Surfaces:
         """[lisle.Mesh] of MeshPlacements, and Blender's object index by object id, for ids that are not in `taken`."""
         kept, meshes, pass_index_of, taken = {}, [], {}, set(taken)
         for placement in placements:
-            surface = placement.surface
-            label = placement.material_name, placement.material_index
-            key = (surface.digest, placement.color, placement.kind, *label)
+            key = _key(placement)
             mesh = kept.get(key) or self._kept.get(key) or _native(lisle, placement)
             kept[key] = mesh
             identity = free_id(placement.identity, taken)
@@ -33,16 +31,22 @@ class Surfaces:
         """[lisle.Mesh] like `meshes`, which are of `placements`, at the places and in the shapes of `others`."""
         made, found = {}, []
         for mesh, placement, other in zip(meshes, placements, others, strict=True):
-            surface = other.surface
-            if surface.digest == placement.surface.digest:
+            if other.surface.digest == placement.surface.digest:
                 shape = mesh
             else:
-                key = (surface.digest, mesh.base_color, mesh.kind, mesh.material_name, mesh.material_index)
+                key = _key(other)
                 if key not in made:
                     made[key] = _native(lisle, other)
                 shape = made[key]
             found.append(_placed(shape, other, mesh.object_id))
         return found
+
+
+def _key(placement):
+    """Equal for what one native mesh can show."""
+    picture = 0 if placement.picture is None else placement.picture.number
+    label = placement.material_name, placement.material_index
+    return (placement.surface.digest, placement.color, placement.kind, *label, picture)
 
 
 def _native(lisle, placement):
@@ -52,6 +56,8 @@ def _native(lisle, placement):
         surface.triangles,
         surface.normals,
         base_color=placement.color,
+        uvs=surface.uvs,
+        texture=None if placement.picture is None else placement.picture.native,
         kind=placement.kind,
         name=placement.name,
         material_name=placement.material_name,

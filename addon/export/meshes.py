@@ -3,12 +3,14 @@
 
 from contextlib import contextmanager
 from dataclasses import dataclass
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
 
 from ..core.pixels import stable_id
 from ..core.surfaces import HOLDOUT, SHADED, SHADOW_CATCHER, Surface, by_material
+from . import textures
 from .instances import instancer_of
 from .nodes import source_of
 
@@ -36,19 +38,23 @@ class MeshPlacement:
     material_name: str
     material_index: int
     """Blender's."""
+    picture: textures.Picture | None = None
+    """In the stead of `color`."""
 
     def order(self):
         """Sorts placements the same way in every process; equal if they look the same."""
         return (
             self.identity, self.surface.digest, self.world_from_object.tobytes(), self.color, self.kind,
             self.pass_index, self.name, self.material_name, self.material_index,
+            0 if self.picture is None else self.picture.number,
         )  # fmt: skip
 
 
 class MeshReader:
-    """Reads meshes, each geometry once."""
+    """Reads meshes, each geometry once. Tells `note` (a callable) what is left out."""
 
-    def __init__(self):
+    def __init__(self, lisle, note):
+        self._lisle, self._note = lisle, note
         self._parts_of = {}
 
     def read(self, instance):
@@ -60,24 +66,32 @@ class MeshReader:
         world_from_object = np.array(instance.matrix_world, dtype=np.float64)
         instancer = instancer_of(instance)
         materials = [slot.material for slot in obj.material_slots] or [None]
+        plans = [plan_of(material, self._note) for material in materials]
         placements = []
-        for index, surface in self._parts(obj):
-            material = materials[min(index, len(materials) - 1)]
+        for index, surface in self._parts(obj, plans):
+            slot = min(index, len(materials) - 1)
+            material, plan = materials[slot], plans[slot]
+            picture = None
+            if plan.image is not None and surface.uvs is None:
+                self._note(f"object '{obj.name}': it lacks the UV map of '{plan.image.name}', a colour counts")
+            elif plan.image is not None:
+                picture = textures.picture(self._lisle, plan.image)
             label = (material.name, material.pass_index) if material is not None else ("", 0)
             identity = stable_id("mesh", obj.original.name_full, index, *instancer)
             placements.append(
                 MeshPlacement(
-                    surface, world_from_object, base_color(material), kind, identity, obj.pass_index, obj.name, *label
+                    surface, world_from_object, plan.color, kind, identity, obj.pass_index, obj.name, *label, picture
                 )
             )
         return placements
 
-    def _parts(self, obj):
+    def _parts(self, obj, plans):
         """[(material index, Surface)]"""
-        key = obj.data.as_pointer() if obj.type == "MESH" else obj.as_pointer()
+        maps = tuple(None if plan.image is None else plan.uv_map for plan in plans)
+        key = obj.data.as_pointer() if obj.type == "MESH" else obj.as_pointer(), maps
         if key not in self._parts_of:
             with evaluated_mesh(obj) as mesh:
-                self._parts_of[key] = [] if mesh is None else _read(mesh)
+                self._parts_of[key] = [] if mesh is None else _read(mesh, maps)
         return self._parts_of[key]
 
 
@@ -106,18 +120,30 @@ def mesh_kind(obj):
     return _KINDS[kind]
 
 
-def base_color(material):
-    """Scene-linear (r, g, b) of a material: of the node that makes its surface, or its colour in the viewport."""
+def plan_of(material, note):
+    """What is taken of a material: `color`, scene-linear (r, g, b); `image` in its stead, or None, and the name of its
+    `uv_map`. The colour is that of the node that makes the surface, or the one in the viewport. Tells `note` what is
+    left out."""
+    plan = SimpleNamespace(color=_GREY, image=None, uv_map="")
     if material is None:
-        return _GREY
+        return plan
     color = material.diffuse_color
     surface = _surface(material)
     if surface is not None:
         socket = surface.inputs.get("Base Color") or surface.inputs.get("Color")
         source = None if socket is None else source_of(socket)
-        if source is not None and source.type == "RGBA" and (not source.is_output or source.node.type == "RGB"):
-            color = source.default_value
-    return tuple(min(max(channel, 0.0), 1.0) for channel in color[:3])
+        if source is None:
+            why = f"its '{surface.name}' node has no colour"
+        elif source.is_output and source.node.type == "TEX_IMAGE" and source.name == "Color":
+            why = textures.read_node(source.node, plan)
+        elif source.type == "RGBA" and (not source.is_output or source.node.type == "RGB"):
+            why, color = None, source.default_value
+        else:
+            why = f"what is linked to {socket.name} is ignored"
+        if why is not None:
+            note(f"material '{material.name}': {why}, its colour in the viewport counts")
+    plan.color = tuple(min(max(channel, 0.0), 1.0) for channel in color[:3])
+    return plan
 
 
 def _surface(material):
@@ -130,8 +156,8 @@ def _surface(material):
     return source.node if source is not None and source.is_output else None
 
 
-def _read(mesh):
-    """[(material index, Surface)] of an evaluated mesh."""
+def _read(mesh, maps):
+    """[(material index, Surface)] of an evaluated mesh; `maps` are names of UV maps by material, None without one."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     if not count:
@@ -142,11 +168,17 @@ def _read(mesh):
     mesh.loop_triangles.foreach_get("vertices", triangles)
     material_index = np.empty(count, np.int32)
     mesh.loop_triangles.foreach_get("material_index", material_index)
+    corners = np.empty(3 * count, np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    corners = corners.reshape(-1, 3)
     normals = None
     if mesh.normals_domain != "FACE":
         at_corners = np.empty(3 * len(mesh.loops), np.float32)
         mesh.corner_normals.foreach_get("vector", at_corners)
-        corners = np.empty(3 * count, np.int32)
-        mesh.loop_triangles.foreach_get("loops", corners)
-        normals = at_corners.reshape(-1, 3)[corners.reshape(-1, 3)]
-    return by_material(positions.reshape(-1, 3), triangles.reshape(-1, 3), normals, material_index)
+        normals = at_corners.reshape(-1, 3)[corners]
+
+    def uvs(index):
+        name = maps[min(index, len(maps) - 1)]
+        return None if name is None else textures.uvs_of(mesh, name, corners)
+
+    return by_material(positions.reshape(-1, 3), triangles.reshape(-1, 3), normals, material_index, uvs)

@@ -92,7 +92,7 @@ def collect(lisle, depsgraph, note, only=None, shows=None):
     `note` is called with each sentence about something left out.
     """
     content = Content()
-    parts_of, reader, guides = {}, MeshReader(), Guides()
+    parts_of, reader, guides = {}, MeshReader(lisle, note), Guides()
     ignored = set()
     for instance in depsgraph.object_instances:
         obj = instance.object

@@ -8,11 +8,9 @@ import bpy
 import numpy as np
 
 from ..core.errors import SceneError
-from ..core.pixels import linear_from_srgb
+from ..core.pixels import LINEAR_SPACES, linear_from_srgb
+from . import textures
 from .nodes import source_of
-
-_LINEAR = {"Linear Rec.709", "Linear", "Non-Color", "scene_linear"}
-"""Colour spaces whose 8-bit numbers are radiances as they are."""
 
 _MOST_KEPT = 4
 
@@ -62,6 +60,7 @@ def read_world(lisle, world, note):
 def forget_images():
     """Reads pictures again the next time: their pixels may have changed."""
     _kept.clear()
+    textures.forget()
 
 
 def plan_of(world, note):
@@ -160,4 +159,4 @@ def _radiance(image, space):
         pixels = np.repeat(pixels[:, :, :1], 3, axis=2)
     pixels = np.nan_to_num(np.maximum(pixels[:, :, :3], 0), posinf=np.finfo(np.float32).max)
     # Blender brings pictures of floats into its scene's space when it loads them.
-    return pixels if image.is_float or space in _LINEAR else linear_from_srgb(pixels)
+    return pixels if image.is_float or space in LINEAR_SPACES else linear_from_srgb(pixels)

@@ -6,6 +6,7 @@ import bpy
 from ..export.guides import Guides
 from ..export.legacy import left_out
 from ..export.meshes import TYPES as MESH_TYPES
+from ..export.meshes import plan_of
 from .panel import LislePanel, YarnPanel, wrapped_label
 
 
@@ -49,7 +50,13 @@ class LISLE_OBJECT_PT_mesh(LislePanel, bpy.types.Panel):
         return super().poll(context) and context.object is not None and context.object.type in MESH_TYPES
 
     def draw(self, context):
-        self.split_layout().prop(context.object.lisle, "mesh_kind", text="Seen As")
+        layout, obj = self.split_layout(), context.object
+        layout.prop(obj.lisle, "mesh_kind", text="Seen As")
+        notes = []
+        for slot in obj.material_slots:
+            plan_of(slot.material, notes.append)
+        for note in dict.fromkeys(notes):
+            wrapped_label(layout, note[0].upper() + note[1:], icon="INFO")
 
 
 PANELS = (LISLE_OBJECT_PT_yarn, LISLE_OBJECT_PT_mesh)

@@ -254,4 +254,8 @@ struct MeshDraw {
     first_corner: u32,
     first_position: u32,
     first_normal: u32,
+    // Of its colours; first_texel is NONE if it has one colour.
+    texture_size: vec2u,
+    first_texel: u32,
+    first_uv: u32,
 }

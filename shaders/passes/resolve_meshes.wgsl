@@ -1,14 +1,17 @@
 // How it works: one thread a pixel. Where a mesh is the nearest, it is lit: shaded by its colour, or as much of a shadow catcher as the
 // light on it is less than without shadows.
 
-// At the corners of each triangle: octahedral.
+// At the corners of each triangle: octahedral. Then places on the texture, two floats each.
 @group(0) @binding(36) var<storage, read> mesh_normals: array<u32>;
+// sRGB codes, red in the lowest byte.
+@group(0) @binding(38) var<storage, read> mesh_texels: array<u32>;
 
 struct MeshPoint {
     position: vec3f,
     // Of the triangle, and as it is shaded; towards the viewer.
     facing: vec3f,
     normal: vec3f,
+    color: vec3f,
     draw: u32,
 }
 
@@ -32,6 +35,32 @@ fn mesh_normal(draw: u32, first: u32, shares: vec3f, facing: vec3f) -> vec3f {
         return facing;
     }
     return turned * (select(-1.0, 1.0, dot(turned, facing) >= 0.0) / size);
+}
+
+// Scene-linear.
+fn texel_color(draw: u32, place: vec2i) -> vec3f {
+    let size = vec2i(mesh_draws[draw].texture_size);
+    let at = vec2u((place + size) % size);
+    let code = unpack4x8unorm(mesh_texels[mesh_draws[draw].first_texel + at.y * u32(size.x) + at.x]).xyz;
+    return select(pow((code + 0.055) / 1.055, vec3f(2.4)), code / 12.92, code <= vec3f(0.04045));
+}
+
+// By the shares of the corners in a point.
+fn mesh_color(draw: u32, first: u32, shares: vec3f) -> vec3f {
+    if mesh_draws[draw].first_texel == NONE {
+        return mesh_draws[draw].color;
+    }
+    let place = mesh_draws[draw].first_uv + 2u * (first - mesh_draws[draw].first_corner);
+    var uv = vec2f(0.0);
+    for (var i = 0u; i < 3u; i++) {
+        uv += bitcast<vec2f>(vec2u(mesh_normals[place + 2u * i], mesh_normals[place + 2u * i + 1u])) * shares[i];
+    }
+    let texel = fract(uv) * vec2f(mesh_draws[draw].texture_size) - 0.5;
+    let low = vec2i(floor(texel));
+    let share = texel - vec2f(low);
+    let below = mix(texel_color(draw, low), texel_color(draw, low + vec2i(1, 0)), share.x);
+    let above = mix(texel_color(draw, low + vec2i(0, 1)), texel_color(draw, low + vec2i(1, 1)), share.x);
+    return mix(below, above, share.y);
 }
 
 // Where the ray through a place of the frame meets a triangle.
@@ -61,7 +90,7 @@ fn mesh_point(triangle: u32, pixel: vec2f) -> MeshPoint {
     if mesh_draws[draw].first_normal != NONE {
         normal = mesh_normal(draw, first, shares, facing);
     }
-    return MeshPoint(position, facing, normal, draw);
+    return MeshPoint(position, facing, normal, mesh_color(draw, first, shares), draw);
 }
 
 // Whether a view's map holds a place.
@@ -168,8 +197,8 @@ fn resolve_meshes(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invoca
             color = vec4f(background_at(pixel) * open, 1.0);
         }
     } else {
-        shaded.once.diffuse = draw.color / PI * light.lamps;
-        shaded.ambient = draw.color / PI * light.sky;
+        shaded.once.diffuse = point.color / PI * light.lamps;
+        shaded.ambient = point.color / PI * light.sky;
         shaded.arriving = luminance(light.lamps);
         shaded.shining = luminance(light.open_lamps);
         color = vec4f(shaded.once.diffuse + shaded.ambient, 1.0);
@@ -178,5 +207,5 @@ fn resolve_meshes(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invoca
     let number = frame.draw_count + point.draw;
     add_sample(index, color, point.normal, vec3f(0.0), depth, f32(number + 1u));
     let own = triangle - 1u - draw.first_triangle;
-    add_mesh_aovs(index, number, own, point.position, select(vec3f(0.0), draw.color, draw.kind == MESH_SHADED), shaded);
+    add_mesh_aovs(index, number, own, point.position, select(vec3f(0.0), point.color, draw.kind == MESH_SHADED), shaded);
 }

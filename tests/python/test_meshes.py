@@ -233,3 +233,79 @@ def test_vectors_of_meshes_follow_their_shape(renderer, yarns):
     np.testing.assert_allclose(inside, np.broadcast_to(expected, inside.shape), atol=0.01)
     rigid = {name: scene_with(yarns, bent(0, 0)) for name in ends}
     assert not renderer.render(scene_with(yarns, bent(0, 0)), passes=["vector"], samples=1, **rigid)["vector"].any()
+
+
+def textured(codes, uvs=None, **options):
+    """The square below the yarn, under a picture; from corner to corner unless `uvs` are given."""
+    at_corners = (SQUARE[:, :2] + 1) / 2 if uvs is None else uvs
+    return lisle.Mesh(
+        SQUARE - [0, 0, 0.5], HALVES, uvs=at_corners[np.array(HALVES)], texture=lisle.Texture(codes), **options
+    )
+
+
+def light_of(codes):
+    """Scene-linear."""
+    code = np.asarray(codes) / 255
+    return np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
+
+
+QUARTERS = np.array([[(255, 0, 0), (0, 128, 0)], [(0, 0, 64), (200, 200, 10)]], np.uint8)
+"""Red and green above blue and yellow."""
+
+
+def test_pictures_lie_on_meshes_by_their_uvs(renderer, yarns):
+    image = draw(renderer, yarns, [textured(np.kron(QUARTERS, np.ones((8, 8, 1), np.uint8)))], passes=["albedo"])
+    # Within the quarters, beside the shadow of the yarn.
+    within = [((8, 22), (8, 42)), ((34, 22), (34, 42))]
+    for codes, places in zip(QUARTERS, within, strict=True):
+        for code, place in zip(codes, places, strict=True):
+            np.testing.assert_allclose(image["combined"][place][:3], 0.8 * light_of(code), atol=1e-4)
+            np.testing.assert_allclose(image["albedo"][place], light_of(code), atol=1e-4)
+    # Half as large and moved by half a picture, it repeats: what lay at a place of four quarters lies at each.
+    corners = SQUARE[:, :2] + 1.5
+    twice = draw(renderer, yarns, [textured(np.kron(QUARTERS, np.ones((8, 8, 1), np.uint8)), corners)])["combined"]
+    np.testing.assert_allclose(twice[8, 22, :3], twice[28, 42, :3], atol=1e-4)
+    assert not np.allclose(twice[8, 22, :3], image["combined"][8, 22, :3], atol=0.05)
+
+
+def test_pictures_are_interpolated_between_texels(renderer, yarns):
+    ramp = np.array([[(0, 0, 0), (255, 255, 255)]], np.uint8)
+    row = draw(renderer, yarns, [textured(ramp)])["combined"][34, 14:50, 0] / 0.8
+    x = (np.arange(64) + 0.5)[14:50] / 20 - 1.6
+    # Middles of texels lie at x = ±0.5; beyond, the next repetition begins.
+    expected = np.interp(x, (-1.5, -0.5, 0.5, 1.5), (1, 0, 1, 0))
+    np.testing.assert_allclose(row, expected, atol=1e-3)
+
+
+def test_instances_have_pictures_of_their_own(renderer, yarns):
+    red, blue = (np.full((2, 2, 3), code, np.uint8) for code in ((255, 0, 0), (0, 0, 255)))
+    shared = textured(red)
+    other = textured(blue, transform=shifted(1.6))
+    plain = lisle.Mesh(SQUARE - [0, 0, 0.5], HALVES, transform=shifted(-1.6), base_color=(0, 1, 0))
+    row = draw(renderer, yarns, [shared.at(shifted(0)), plain, other])["combined"][34, :, :3]
+    assert row[4].tolist() == pytest.approx([0, 0.8, 0], abs=1e-3)
+    assert row[32].tolist() == pytest.approx([0.8, 0, 0], abs=1e-3)
+    assert row[60].tolist() == pytest.approx([0, 0, 0.8], abs=1e-3)
+    again = draw(renderer, yarns, [textured(blue)])["combined"][34, 32, :3]
+    assert again.tolist() == pytest.approx([0, 0, 0.8], abs=1e-3)
+    traced = draw(lisle.Reference(), yarns, [textured(QUARTERS)])["combined"][34, 32, :3]
+    mean = light_of(QUARTERS).mean(axis=(0, 1))
+    np.testing.assert_allclose(traced, 0.8 * mean, rtol=0.2)
+    np.testing.assert_allclose(textured(QUARTERS).base_color, mean, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda: lisle.Texture(np.zeros((2, 2, 3))), "expected .h, w, 3. or .h, w, 4. uint8, got .2, 2, 3. float64"),
+        (lambda: lisle.Texture(np.zeros((2, 0, 3), np.uint8)), "Texture"),
+        (lambda: lisle.Texture("picture.png"), "Texture"),
+        (lambda: lisle.Mesh(SQUARE, HALVES, texture=lisle.Texture(QUARTERS)), "mesh: texture: it needs uvs"),
+        (lambda: lisle.Mesh(SQUARE, HALVES, texture=QUARTERS), "mesh: texture: expected a lisle.Texture, got ndarray"),
+        (lambda: lisle.Mesh(SQUARE, HALVES, uvs=SQUARE[:, :2]), r"uvs: expected shape \(2, 3, 2\), got \(4, 2\)"),
+        (lambda: lisle.Mesh(SQUARE, HALVES, uvs=np.full((2, 3, 2), np.nan)), "UV coordinates of triangle 0"),
+    ],
+)
+def test_what_is_no_picture_is_named(make, message):
+    with pytest.raises(lisle.InputError, match=message):
+        make()

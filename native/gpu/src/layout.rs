@@ -207,6 +207,9 @@ shared! {
         first_corner: u32,
         first_position: u32,
         first_normal: u32,
+        texture_size: [u32; 2],
+        first_texel: u32,
+        first_uv: u32,
     }
     Sky {
         environment_from_render_x: Vec4,

@@ -29,7 +29,8 @@ pub use error::Error;
 pub use image::{Image, Statistics};
 pub use lisle_core::sampling::Filter;
 pub use lisle_core::scene::{
-    Camera, Cone, Environment, EnvironmentImage, Labels, Lens, Light, Mesh, MeshKind, Object, Scene, Shading, Triangles,
+    Camera, Cone, Environment, EnvironmentImage, Labels, Lens, Light, Mesh, MeshKind, Object, Scene, Shading, Texture,
+    Triangles,
 };
 pub use motion::Exposure;
 pub use renderer::{Progress, Renderer};

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
-use lisle_core::scene::{Mesh, MeshKind, Triangles};
+use lisle_core::scene::{Mesh, MeshKind, Texture, Triangles};
 use rayon::prelude::*;
 
 use crate::device::Gpu;
 use crate::knots::pack_unit_vector;
 use crate::layout::{self, MESH_HOLDOUT, MESH_SHADED, MESH_SHADOW_CATCHER, NONE};
-use crate::upload::storage;
+use crate::upload::{empty_storage, storage};
 use crate::view::Bounds;
 use crate::{Error, Scene};
 
@@ -21,6 +21,8 @@ struct Upload {
     first_position: u32,
     first_corner: u32,
     first_normal: u32,
+    /// Behind the normals; read where there is a texture.
+    first_uv: u32,
     /// At each time step of the picture; none where all are one.
     shapes: Vec<Arc<Triangles>>,
 }
@@ -50,7 +52,8 @@ pub(crate) fn correspond(a: &Arc<Triangles>, b: &Arc<Triangles>) -> bool {
     Arc::ptr_eq(a, b)
         || (a.positions().len() == b.positions().len()
             && a.triangles() == b.triangles()
-            && a.normals().is_some() == b.normals().is_some())
+            && a.normals().is_some() == b.normals().is_some()
+            && a.uvs().is_some() == b.uvs().is_some())
 }
 
 fn bounds(triangles: &Triangles) -> Bounds {
@@ -67,7 +70,10 @@ pub(crate) struct MeshBuffers {
     uploads: Vec<Upload>,
     pub positions: wgpu::Buffer,
     pub corners: wgpu::Buffer,
+    /// And places on textures.
     pub normals: wgpu::Buffer,
+    pub texels: wgpu::Buffer,
+    textures: Vec<Arc<Texture>>,
     /// Geometry of each mesh, and triangles of all.
     which: Vec<usize>,
     triangle_count: u32,
@@ -103,6 +109,19 @@ impl MeshBuffers {
                 })
             })
             .collect();
+        let mut textures: Vec<&Arc<Texture>> = Vec::new();
+        for texture in scene.meshes.iter().filter_map(|mesh| mesh.texture.as_ref()) {
+            if !textures.iter().any(|known| Arc::ptr_eq(known, texture)) {
+                textures.push(texture);
+            }
+        }
+        let is_kept = |p: &&Self| {
+            p.textures.len() == textures.len() && p.textures.iter().zip(&textures).all(|(a, b)| Arc::ptr_eq(a, b))
+        };
+        let texels = match previous.as_ref().filter(is_kept) {
+            Some(previous) => previous.texels.clone(),
+            None => upload_textures(gpu, &textures)?,
+        };
         let kept = previous.filter(|p| {
             // One that moved in its picture is left somewhere on its way.
             p.uploads.iter().all(|upload| upload.shapes.is_empty())
@@ -111,8 +130,10 @@ impl MeshBuffers {
         });
         let mut buffers = match kept {
             Some(buffers) => buffers,
-            None => Self::upload(gpu, &distinct)?,
+            None => Self::upload(gpu, &distinct, texels.clone())?,
         };
+        buffers.texels = texels;
+        buffers.textures = textures.into_iter().map(Arc::clone).collect();
         let triangles: u64 = scene.meshes.iter().map(|mesh| mesh.triangles.triangles().len() as u64).sum();
         // Corners of all instances are numbered.
         if 3 * triangles > u64::from(u32::MAX) {
@@ -166,7 +187,7 @@ impl MeshBuffers {
         }
     }
 
-    fn upload(gpu: &Gpu, distinct: &[&Arc<Triangles>]) -> Result<Self, Error> {
+    fn upload(gpu: &Gpu, distinct: &[&Arc<Triangles>], texels: wgpu::Buffer) -> Result<Self, Error> {
         let (mut positions, mut corners, mut at_corners) = (Vec::new(), Vec::new(), Vec::new());
         let mut uploads = Vec::with_capacity(distinct.len());
         for triangles in distinct {
@@ -174,6 +195,7 @@ impl MeshBuffers {
             let center = if bounds.is_empty() { DVec3::ZERO } else { 0.5 * (bounds.min + bounds.max) };
             let too_many = |_| Error::input("scene", "more than 4.29 billion corners of triangles");
             let place = |count: usize| u32::try_from(count).map_err(too_many);
+            let own_normals = 3 * triangles.normals().map_or(0, <[_]>::len);
             let upload = Upload {
                 triangles: Arc::clone(triangles),
                 center,
@@ -181,18 +203,23 @@ impl MeshBuffers {
                 first_position: place(positions.len())?,
                 first_corner: place(3 * corners.len())?,
                 first_normal: if triangles.normals().is_some() { place(at_corners.len())? } else { NONE },
+                first_uv: place(at_corners.len() + own_normals)?,
                 shapes: Vec::new(),
             };
             positions.extend(upload.positions(triangles, triangles, 0.0));
             corners.extend_from_slice(triangles.triangles());
             at_corners.extend(normals(triangles, triangles, 0.0));
+            let uvs = triangles.uvs().unwrap_or_default().as_flattened().as_flattened();
+            at_corners.extend(uvs.iter().map(|place| place.to_bits()));
             uploads.push(upload);
         }
         Ok(Self {
             uploads,
             positions: storage(gpu, "positions of meshes", &positions)?,
             corners: storage(gpu, "triangles of meshes", &corners)?,
-            normals: storage(gpu, "normals of meshes", &at_corners)?,
+            normals: storage(gpu, "normals and UV coordinates of meshes", &at_corners)?,
+            texels,
+            textures: Vec::new(),
             which: Vec::new(),
             triangle_count: 0,
         })
@@ -217,11 +244,25 @@ impl MeshBuffers {
                 first_corner: upload.first_corner,
                 first_position: upload.first_position,
                 first_normal: upload.first_normal,
+                texture_size: mesh.texture.as_ref().map_or([0; 2], |texture| texture.size()),
+                first_texel: self.first_texel(mesh),
+                first_uv: upload.first_uv,
             });
             first_triangle += upload.triangles.triangles().len() as u32;
             places.bounds.merge(&upload.bounds.transformed(&render_from_object));
         }
         places
+    }
+
+    fn first_texel(&self, mesh: &Mesh) -> u32 {
+        let mut first = 0;
+        for texture in &self.textures {
+            if mesh.texture.as_ref().is_some_and(|own| Arc::ptr_eq(own, texture)) {
+                return first;
+            }
+            first += texture.texels().len() as u32;
+        }
+        NONE
     }
 
     /// Of all instances.
@@ -234,8 +275,20 @@ impl MeshBuffers {
     }
 
     pub fn bytes(&self) -> u64 {
-        [&self.positions, &self.corners, &self.normals].map(wgpu::Buffer::size).iter().sum()
+        [&self.positions, &self.corners, &self.normals, &self.texels].map(wgpu::Buffer::size).iter().sum()
     }
+}
+
+fn upload_textures(gpu: &Gpu, textures: &[&Arc<Texture>]) -> Result<wgpu::Buffer, Error> {
+    let count: usize = textures.iter().map(|texture| texture.texels().len()).sum();
+    let buffer = empty_storage(gpu, "textures of meshes", 4 * count as u64)?;
+    let mut first = 0;
+    for texture in textures {
+        let bytes: &[u8] = bytemuck::cast_slice(texture.texels());
+        gpu.queue.write_buffer(&buffer, first, bytes);
+        first += bytes.len() as u64;
+    }
+    Ok(buffer)
 }
 
 fn kind(mesh: &Mesh) -> u32 {

@@ -324,6 +324,7 @@ fn wall(toward: DVec3, distance: f64, side: f32) -> Mesh {
         labels: Labels::default(),
         triangles: Arc::new(square),
         base_color: Vec3::ONE,
+        texture: None,
         kind: MeshKind::Shaded,
         world_from_object: looking(toward * distance, DVec3::ZERO),
     }

@@ -57,6 +57,7 @@ fn mesh(triangles: Arc<Triangles>, world_from_object: DMat4) -> Mesh {
         labels: Labels::default(),
         triangles,
         base_color: Vec3::new(0.8, 0.5, 0.2),
+        texture: None,
         kind: MeshKind::Shaded,
         world_from_object,
     }

@@ -234,6 +234,7 @@ fn meshes_are_followed() {
         labels: Labels::default(),
         triangles: std::sync::Arc::new(Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]], None).expect("a square")),
         base_color: glam::Vec3::ONE,
+        texture: None,
         kind: MeshKind::Shaded,
         world_from_object: DMat4::from_translation(DVec3::new(0.1, 0.0, 0.2)),
     };

@@ -146,6 +146,7 @@ fn a_tall_picture_with_a_mesh_is_drawn_in_tiles() {
         labels: Default::default(),
         triangles: Arc::new(Triangles::new(corners, vec![[0, 1, 2], [0, 2, 3]], None).expect("a square")),
         base_color: Vec3::ONE,
+        texture: None,
         kind: MeshKind::Shaded,
         world_from_object: DMat4::IDENTITY,
     };

@@ -18,7 +18,7 @@ from .image import FURTHER_PASSES, Image
 from .lights import Area, Light, Point, Spot, Sun
 from .loading import load
 from .material import Material
-from .mesh import Mesh
+from .mesh import Mesh, Texture
 from .reference import Fibers, Reference, fibers
 from .renderer import Renderer
 from .scene import Object, Scene
@@ -47,6 +47,7 @@ __all__ = [
     "Scene",
     "Spot",
     "Sun",
+    "Texture",
     "Yarn",
     "Yarns",
     "__version__",

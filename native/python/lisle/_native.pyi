@@ -17,6 +17,7 @@ __all__ = [
     "Adapter",
     "EnvironmentImage",
     "Renderer",
+    "Texels",
     "Triangles",
     "Yarns",
     "__version__",
@@ -153,8 +154,17 @@ class Triangles:
         positions: npt.NDArray[np.float32],
         triangles: npt.NDArray[np.uint32],
         normals: npt.NDArray[np.float32] | None,
+        uvs: npt.NDArray[np.float32] | None,
     ) -> Triangles: ...
     def __len__(self) -> int: ...
+
+@final
+class Texels:
+    """A picture of colours on surfaces."""
+
+    def __new__(cls, codes: npt.NDArray[np.uint8]) -> Texels: ...
+    @property
+    def size(self) -> tuple[int, int]: ...
 
 @final
 class EnvironmentImage:

@@ -43,7 +43,7 @@ mod native {
     #[pymodule_export]
     use super::material::{check_material, material_preset, material_presets};
     #[pymodule_export]
-    use super::mesh::Triangles;
+    use super::mesh::{Texels, Triangles};
     #[pymodule_export]
     use super::png::save_png;
     #[pymodule_export]

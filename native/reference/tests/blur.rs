@@ -129,6 +129,7 @@ fn half() -> Mesh {
         labels: Default::default(),
         triangles: Arc::new(Triangles::new(positions, vec![[0, 1, 2], [0, 2, 3]], None).expect("a mesh")),
         base_color: Vec3::ONE,
+        texture: None,
         kind: MeshKind::Shaded,
         world_from_object: DMat4::IDENTITY,
     }

@@ -23,6 +23,7 @@ fn mesh(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Mesh {
         labels: Default::default(),
         triangles: Arc::new(Triangles::new(positions, triangles.to_vec(), None).expect("a mesh")),
         base_color: Vec3::splat(COLOR),
+        texture: None,
         kind: MeshKind::Shaded,
         world_from_object: DMat4::IDENTITY,
     }

@@ -165,9 +165,16 @@ class Environment:
         assert self.world_from_environment.shape in ((), (3, 3))
 
 
+class Texture:
+    def __init__(self, codes):
+        assert codes.dtype == np.uint8 and codes.ndim == 3 and codes.shape[2] == 3
+        self.codes = codes.copy()
+
+
 class Mesh:
     def __init__(
-        self, positions, triangles, normals=None, *, base_color, kind, name, material_name, material_index,
+        self, positions, triangles, normals=None, *, base_color, uvs, texture, kind, name, material_name,
+        material_index,
     ):  # fmt: skip
         assert positions.shape[1:] == triangles.shape[1:] == (3,) and positions.dtype == np.float32
         assert normals is None or normals.shape == (*triangles.shape, 3)
@@ -175,6 +182,9 @@ class Mesh:
         self.positions, self.corners, self.normals = positions, triangles, normals
         self.triangles, self.base_color, self.kind, self.name = object(), base_color, kind, name
         self.material_name, self.material_index = material_name, material_index
+        assert uvs is None or uvs.shape == (*triangles.shape[:1], 3, 2)
+        assert texture is None or uvs is not None
+        self.uvs, self.texture = uvs, texture
 
     def at(self, transform, object_id, name, object_index):
         placed = object.__new__(Mesh)

@@ -10,6 +10,7 @@ pub struct Triangles {
     positions: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
     normals: Option<Vec<[[f32; 3]; 3]>>,
+    uvs: Option<Vec<[[f32; 2]; 3]>>,
 }
 
 impl Triangles {
@@ -39,7 +40,22 @@ impl Triangles {
                 return invalid(format!("the normals of triangle {place} are {:?}", normals[place]));
             }
         }
-        Ok(Self { positions, triangles, normals })
+        Ok(Self { positions, triangles, normals, uvs: None })
+    }
+
+    /// The same with places on a [`Texture`] at the three corners of each triangle.
+    ///
+    /// # Errors
+    /// [`SceneError`] for places that are not as many, or not finite.
+    pub fn with_uvs(self, uvs: Vec<[[f32; 2]; 3]>) -> Result<Self, SceneError> {
+        let invalid = |reason: String| Err(SceneError::input("mesh", reason));
+        if uvs.len() != self.triangles.len() {
+            return invalid(format!("{} triangles with UV coordinates for {}", self.triangles.len(), uvs.len()));
+        }
+        if let Some(place) = uvs.iter().position(|corners| !corners.as_flattened().iter().all(|c| c.is_finite())) {
+            return invalid(format!("the UV coordinates of triangle {place} are {:?}", uvs[place]));
+        }
+        Ok(Self { uvs: Some(uvs), ..self })
     }
 
     /// All positions.
@@ -55,6 +71,43 @@ impl Triangles {
     /// At the corners of each triangle; `None` if it is flat.
     pub fn normals(&self) -> Option<&[[[f32; 3]; 3]]> {
         self.normals.as_deref()
+    }
+
+    /// Likewise, places on a texture.
+    pub fn uvs(&self) -> Option<&[[[f32; 2]; 3]]> {
+        self.uvs.as_deref()
+    }
+}
+
+/// A picture of colours on a surface, repeated endlessly. The first texel's corner lies at (0, 0), the last one's at (1, 1); between the middles
+/// of texels it is interpolated.
+#[derive(Debug, PartialEq)]
+pub struct Texture {
+    size: [u32; 2],
+    texels: Vec<u32>,
+}
+
+impl Texture {
+    /// Width, height, and sRGB codes (IEC 61966-2-1) row by row from the bottom, red in the lowest byte; the highest one is left out.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a size that does not fit.
+    pub fn new(size: [u32; 2], texels: Vec<u32>) -> Result<Self, SceneError> {
+        let [width, height] = size;
+        if width == 0 || height == 0 || texels.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(SceneError::input("texture", format!("{} texels are not {width}×{height}", texels.len())));
+        }
+        Ok(Self { size, texels })
+    }
+
+    /// Width and height.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Row by row from the bottom.
+    pub fn texels(&self) -> &[u32] {
+        &self.texels
     }
 }
 
@@ -83,6 +136,8 @@ pub struct Mesh {
     pub triangles: Arc<Triangles>,
     /// Share of the light that it gives back, scene-linear, 0 to 1.
     pub base_color: Vec3,
+    /// That share by place, in its stead; needs triangles with UV coordinates. The path tracer takes `base_color` alone.
+    pub texture: Option<Arc<Texture>>,
     /// What is seen of it.
     pub kind: MeshKind,
     /// Object to world.
@@ -100,6 +155,9 @@ impl Mesh {
             && self.base_color.max_element() <= 1.0)
         {
             return invalid(format!("a base colour of {} is not from 0 to 1", self.base_color));
+        }
+        if self.texture.is_some() && self.triangles.uvs().is_none() {
+            return invalid("its texture needs UV coordinates".into());
         }
         Ok(())
     }
@@ -129,10 +187,20 @@ mod tests {
             labels: Labels::default(),
             triangles: Arc::new(Triangles::new(corners(), vec![[0, 1, 2]], None).expect("a triangle")),
             base_color: Vec3::ONE,
+            texture: None,
             kind: MeshKind::Shaded,
             world_from_object: DMat4::IDENTITY,
         };
         good.validate().expect("valid");
+        let texture = |size, texels| Texture::new(size, texels).map(Arc::new);
+        refused(texture([2, 1], vec![0]).map(|_| ()), "1 texels are not 2×1");
+        let texture = texture([1, 1], vec![0]).ok();
+        refused(Mesh { texture: texture.clone(), ..good.clone() }.validate(), "texture needs UV");
+        let with = |uvs| Triangles::new(corners(), vec![[0, 1, 2]], None).expect("a triangle").with_uvs(uvs);
+        refused(with(vec![]).map(|_| ()), "UV coordinates for 0");
+        refused(with(vec![[[f32::NAN; 2]; 3]]).map(|_| ()), "UV coordinates of triangle 0");
+        let triangles = Arc::new(with(vec![[[0.0; 2]; 3]]).expect("with UV coordinates"));
+        Mesh { texture, triangles, ..good.clone() }.validate().expect("valid");
         refused(Mesh { base_color: Vec3::splat(1.5), ..good.clone() }.validate(), "mesh \"Floor\": a base colour");
         refused(Mesh { world_from_object: DMat4::IDENTITY * f64::NAN, ..good }.validate(), "transform");
     }

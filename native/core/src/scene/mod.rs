@@ -9,7 +9,7 @@ mod motion;
 pub use environment::{Environment, EnvironmentImage};
 pub use lens::Lens;
 pub use light::{Cone, Light};
-pub use mesh::{Mesh, MeshKind, Triangles};
+pub use mesh::{Mesh, MeshKind, Texture, Triangles};
 pub use motion::between;
 
 use std::sync::Arc;

@@ -236,7 +236,7 @@ impl<'a> Recorder<'a> {
 
     fn bindings(&self) -> Bindings<'a> {
         let (scene, frame) = (self.input.buffers, self.frame);
-        let buffers: [(u32, &wgpu::Buffer); 30] = [
+        let buffers: [(u32, &wgpu::Buffer); 31] = [
             (0, &frame.uniform),
             (1, &frame.draws),
             (2, &scene.curves),
@@ -266,6 +266,7 @@ impl<'a> Recorder<'a> {
             (34, &self.input.meshes.positions),
             (35, &self.input.meshes.corners),
             (36, &self.input.meshes.normals),
+            (38, &self.input.meshes.texels),
             (40, &frame.aovs),
         ];
         let mut bindings: Bindings = buffers.map(|(number, buffer)| (number, buffer.as_entire_binding())).into();

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures as colours of meshes: the one of an Image Texture node, through a UV map."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.pixels import LINEAR_SPACES, srgb_from_linear
+from .nodes import source_of
+
+_MOST_KEPT = 32
+
+_kept = {}
+"""Picture by what tells images apart."""
+
+_numbers = itertools.count(1)
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """The pixels of an image at one time."""
+
+    number: int
+    """Differs from that of any other."""
+    native: object
+    """lisle.Texture"""
+
+
+def picture(lisle, image):
+    """The Picture of a `bpy.types.Image`."""
+    space = image.colorspace_settings.name
+    key = (image.session_uid, image.filepath, tuple(image.size), image.is_float, space)
+    if key not in _kept:
+        while len(_kept) >= _MOST_KEPT:
+            del _kept[next(iter(_kept))]
+        _kept[key] = Picture(next(_numbers), lisle.Texture(_codes(image, space)))
+    return _kept[key]
+
+
+def forget():
+    """Reads images again the next time: their pixels may have changed."""
+    _kept.clear()
+
+
+def read_node(node, plan):
+    """Fills the `image` and `uv_map` ("" for the map that renders) of a plan from an Image Texture node. Returns why
+    that cannot be, in words, or None."""
+    image = node.image
+    if image is None:
+        return f"'{node.name}' has no picture"
+    if image.source not in {"FILE", "GENERATED"}:
+        return f"the picture '{image.name}' is a {image.source.lower()}"
+    if 0 in image.size:
+        return f"the picture '{image.name}' cannot be loaded"
+    if node.projection != "FLAT" or node.extension != "REPEAT":
+        return f"'{node.name}' is not flat and repeated"
+    vector = source_of(node.inputs["Vector"])
+    if vector.is_output:
+        if vector.node.type == "UVMAP":
+            plan.uv_map = vector.node.uv_map
+        elif vector.node.type != "TEX_COORD" or vector.name != "UV":
+            return f"'{node.name}' is not placed by a UV map alone"
+    plan.image = image
+    return None
+
+
+def uvs_of(mesh, name, corners):
+    """(m, 3, 2) float32 places on a map of the mesh at corners of triangles ((m, 3) places of corners); None without that
+    map. An empty name stands for the map that renders."""
+    layers = mesh.uv_layers
+    layer = layers.get(name) if name else next((layer for layer in layers if layer.active_render), None)
+    if layer is None:
+        return None
+    values = np.empty(2 * len(mesh.loops), np.float32)
+    layer.uv.foreach_get("vector", values)
+    return values.reshape(-1, 2)[corners]
+
+
+def _codes(image, space):
+    """(h, w, 3) uint8 sRGB codes, row 0 at the top."""
+    width, height = image.size
+    pixels = np.empty(width * height * image.channels, np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(height, width, image.channels)[::-1]
+    if image.channels < 3:
+        pixels = np.repeat(pixels[:, :, :1], 3, axis=2)
+    pixels = np.clip(np.nan_to_num(pixels[:, :, :3]), 0, 1)
+    # Blender brings pictures of floats into its scene's space when it loads them.
+    if image.is_float or space in LINEAR_SPACES:
+        pixels = srgb_from_linear(pixels)
+    return np.round(255 * pixels).astype(np.uint8)
