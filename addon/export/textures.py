@@ -66,8 +66,8 @@ def read_node(node, plan):
 
 
 def uvs_of(mesh, name, corners):
-    """(m, 3, 2) float32 places on a map of the mesh at corners of triangles ((m, 3) places of corners); None without that
-    map. An empty name stands for the map that renders."""
+    """(m, 3, 2) float32 places on a map of the mesh at corners of triangles ((m, 3) places of corners); None without
+    that map. An empty name stands for the map that renders."""
     layers = mesh.uv_layers
     layer = layers.get(name) if name else next((layer for layer in layers if layer.active_render), None)
     if layer is None:

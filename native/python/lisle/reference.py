@@ -128,8 +128,8 @@ class Reference:
             lights: any number of lights.
             ambient: constant radiance from everywhere, scene-linear.
             environment: light from all sides, which is added to `ambient`.
-            meshes: matt surfaces, from and to which light is scattered. Shadow catchers and holes in the picture are
-                such for the camera alone.
+            meshes: matt surfaces, from and to which light is scattered; under a texture, of its mean colour. A shadow
+                catcher or a hole in the picture is one for the camera alone.
             samples: independent paths per pixel.
             size: width and height of the whole frame, pixels; the camera's unless given.
             shading: "physical" (R + TT and diffuse) or "simple".
