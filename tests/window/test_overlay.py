@@ -98,7 +98,8 @@ def test_its_colours_are_those_of_the_viewports_view_transform(over, settings, t
     # What the display's own curve would make of it is far from that.
     over.do(
         "display = sys.modules[PACKAGE + '.overlay.display']; transform_of = display.transform_of\n"
-        "display.transform_of = lambda *_: None; areas()[0].tag_redraw()"
+        "display.transform_of = lambda *_: None; areas()[0].tag_redraw()\n"
+        "bpy.ops.wm.redraw_timer(type='DRAW_WIN_SWAP', iterations=1)"
     )
     plain = screen(over)[top:bottom, left:right].astype(int)
     over.do("display.transform_of = transform_of")
