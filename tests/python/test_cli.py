@@ -1,4 +1,5 @@
 import json
+import os
 import subprocess
 import sys
 
@@ -214,6 +215,16 @@ def test_devices(renderer):
     devices = json.loads(run("devices", "--json").stdout)
     assert renderer.adapter.name in [device["name"] for device in devices]
     assert renderer.adapter.name in run("devices").stdout
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_no_devices(tmp_path, form):
+    # Drivers as the loader knows them by its older name and its newer one.
+    drivers = dict.fromkeys(("VK_ICD_FILENAMES", "VK_DRIVER_FILES"), str(tmp_path / "none.json"))
+    result = run("devices", *form, env={**os.environ, **drivers})
+    assert result.returncode == 1
+    assert "no graphics adapter answers" in result.stderr
+    assert (json.loads(result.stdout) == []) if form else (not result.stdout)
 
 
 def test_version():

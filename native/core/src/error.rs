@@ -40,13 +40,13 @@ pub enum Error {
     },
 
     /// A curve with fewer points than its basis needs.
-    #[error("curve {curve} has {points} points; a {kind} curve needs {needed}")]
+    #[error("curve {curve} has {points} points; {kind} curve needs {needed}")]
     PointCount {
         /// Index of the curve.
         curve: usize,
         /// Its number of points.
         points: usize,
-        /// Its kind, such as "closed Bézier".
+        /// Its kind, such as "a closed Bézier".
         kind: String,
         /// The counts that are allowed.
         needed: String,

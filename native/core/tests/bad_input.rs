@@ -109,6 +109,7 @@ fn too_few_points() {
             basis,
         ));
         assert!(matches!(error, Error::PointCount { curve: 1, points, .. } if points == count), "{error}");
+        assert!(error.to_string().contains(if closed { "; a closed " } else { "; an open " }), "{error}");
     }
 }
 

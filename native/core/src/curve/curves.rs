@@ -170,7 +170,7 @@ impl Curves {
             }
         };
         if !enough {
-            let kind = format!("{} {}", if closed { "closed" } else { "open" }, basis.name());
+            let kind = format!("{} {}", if closed { "a closed" } else { "an open" }, basis.name());
             return Err(Error::PointCount { curve, points: n, kind, needed });
         }
         if let Basis::Nurbs(nurbs) = basis {

@@ -17,15 +17,15 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Prints the adapters, the default one first."""
+    """Prints the adapters, the default one first. None is a failure, in both forms: an empty list is printed, then."""
     found = adapters()
     if arguments.json:
         print(json.dumps([{field: getattr(adapter, field) for field in FIELDS} for adapter in found], indent=2))
-    elif not found:
-        raise DeviceError(
-            "no graphics adapter answers: install a Vulkan driver (Debian: apt install mesa-vulkan-drivers)"
-        )
     else:
         for adapter in found:
             atomics = "64-bit atomics" if adapter.has_int64_atomics else "32-bit atomics"
             print(f"{adapter.name}\n  {adapter.backend}, {adapter.device_type}, {adapter.driver}, {atomics}")
+    if not found:
+        raise DeviceError(
+            "no graphics adapter answers: install a Vulkan driver (Debian: apt install mesa-vulkan-drivers)"
+        )
