@@ -18,5 +18,7 @@ mod world;
 
 pub use error::Error;
 pub use film::{Film, Image};
+#[doc(hidden)]
+pub use material::NearField;
 pub use render::Reference;
 pub use settings::Settings;

@@ -1,27 +1,43 @@
 //! A fiber's scattering taken apart: light through and around the whole fiber, and light off the point that is seen.
 
 use std::f64::consts::{FRAC_1_PI, TAU};
+use std::sync::Arc;
 
 use glam::DVec3;
 use lisle_core::scattering::{FiberScattering, Material};
 use lisle_core::scene::Shading;
 
-use lisle_core::sampling::Random;
+use lisle_core::sampling::{Random, sphere};
 
-/// Which of the two parts scatters.
+/// Scattering at the point of a fiber that is seen, from wherever on the width: a function to compare with other renderers, of no use to
+/// pictures.
+pub trait NearField: Send + Sync {
+    /// f times the cosine, 1/sr: radiance towards `wo` per radiance and solid angle from `wi`, both in the fiber's axes. X is the normal of the
+    /// surface at the point, Z the tangent, so that `wo` tells where on the width the point is seen.
+    fn evaluate(&self, wo: DVec3, wi: DVec3) -> DVec3;
+}
+
+/// Which of the parts scatters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
     /// S of the fiber: it takes in light over its whole width, wherever on the width it is seen.
     Fiber,
     /// Lambert's term at the surface.
     Surface,
+    /// Another function at the surface, which takes in light from all around.
+    Near,
 }
 
-/// Both parts of a material.
+/// Density of all directions alike.
+const EVEN: f64 = 0.25 * FRAC_1_PI;
+
+/// All parts of a material.
 #[derive(Clone)]
 pub(crate) struct Scattering {
     fiber: Option<FiberScattering>,
     surface_albedo: DVec3,
+    /// In place of all else.
+    near: Option<Arc<dyn NearField>>,
 }
 
 /// A direction drawn by one part.
@@ -48,19 +64,25 @@ impl Scattering {
                 (has_lobes.then(|| FiberScattering::physical(bare)), material.diffuse * material.diffuse_weight)
             }
         };
-        Self { fiber, surface_albedo }
+        Self { fiber, surface_albedo, near: None }
     }
 
     /// A matt surface of one colour.
     pub fn matt(color: DVec3) -> Self {
-        Self { fiber: None, surface_albedo: color }
+        Self { fiber: None, surface_albedo: color, near: None }
+    }
+
+    /// Another function alone.
+    pub fn near(function: Arc<dyn NearField>) -> Self {
+        Self { near: Some(function), ..Self::matt(DVec3::ZERO) }
     }
 
     /// The parts that scatter anything.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
         let fiber = self.fiber.as_ref().map(|_| Part::Fiber);
         let surface = (self.surface_albedo != DVec3::ZERO).then_some(Part::Surface);
-        fiber.into_iter().chain(surface)
+        let near = self.near.as_ref().map(|_| Part::Near);
+        fiber.into_iter().chain(surface).chain(near)
     }
 
     /// A part's f, 1/sr: radiance towards `wo` per radiance and solid angle from `wi`.
@@ -69,6 +91,7 @@ impl Scattering {
             (Part::Fiber, Some(fiber)) => fiber.evaluate(wo, wi),
             (Part::Fiber, None) => DVec3::ZERO,
             (Part::Surface, _) => self.surface_albedo * (FRAC_1_PI * wi.x.max(0.0)),
+            (Part::Near, _) => self.near.as_ref().map_or(DVec3::ZERO, |near| near.evaluate(wo, wi)),
         }
     }
 
@@ -79,6 +102,7 @@ impl Scattering {
             (Part::Fiber, Some(fiber)) => (1.0 - chance) * fiber.pdf(wo, wi),
             (Part::Fiber, None) => 0.0,
             (Part::Surface, _) => chance * FRAC_1_PI * wi.x.max(0.0),
+            (Part::Near, _) => EVEN,
         }
     }
 
@@ -95,6 +119,10 @@ impl Scattering {
 
     /// Draws a part and a direction; `None` where nothing is scattered.
     pub fn sample(&self, wo: DVec3, random: &mut Random) -> Option<Onward> {
+        if let Some(near) = &self.near {
+            let wi = sphere(random.pair());
+            return Some(Onward { part: Part::Near, wi, weight: near.evaluate(wo, wi) / EVEN, pdf: EVEN });
+        }
         let chance = self.surface_chance(wo);
         let (choice, numbers) = (random.unit(), random.triple());
         if choice >= chance {

@@ -191,14 +191,14 @@ impl Vertex<'_> {
     fn lit_point(&self, part: Part) -> DVec3 {
         match part {
             Part::Fiber => self.axis(),
-            Part::Surface => self.surface.position,
+            Part::Surface | Part::Near => self.surface.position,
         }
     }
 
     /// The axes in which a part's directions are given.
     fn frame(&self, part: Part) -> &FiberFrame {
         match part {
-            Part::Fiber => &self.fiber_frame,
+            Part::Fiber | Part::Near => &self.fiber_frame,
             Part::Surface => &self.surface_frame,
         }
     }
@@ -209,7 +209,9 @@ impl Vertex<'_> {
         let Surface { position, cone_normal, radius, tangent, .. } = self.surface;
         let origin = match part {
             // On the side that faces the direction, if only by rounding.
-            Part::Surface => position + cone_normal * (OFFSET * radius * cone_normal.dot(direction).signum()),
+            Part::Surface | Part::Near => {
+                position + cone_normal * (OFFSET * radius * cone_normal.dot(direction).signum())
+            }
             Part::Fiber => {
                 let facing = (direction - tangent * direction.dot(tangent)).normalize_or(cone_normal);
                 let offset = 2.0 * random.unit() - 1.0;

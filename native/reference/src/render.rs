@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use crate::assembly::Ray;
 use crate::film::{EMPTY_DEPTH, Film, Pixel, Sample};
+use crate::material::NearField;
 use crate::shutter::Shutter;
 use crate::world::{Met, World};
 use crate::{Error, Settings};
@@ -74,6 +75,16 @@ impl Reference {
         let filter = PixelFilter::new(Filter::default(), settings.filter_width);
         let middle = Moment { sample: 0, world: Arc::new(world), view };
         Ok(Self { shutter, middle, filter, settings: settings.clone(), region, digest })
+    }
+
+    /// Has all fibers scatter by another function: for comparisons with other renderers, of a scene in which nothing moves.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_near_field(mut self, function: Arc<dyn NearField>) -> Self {
+        if let Some(world) = Arc::get_mut(&mut self.middle.world) {
+            world.scatter_by(&function);
+        }
+        self
     }
 
     /// What is seen at the time of a sample.

@@ -1,6 +1,7 @@
 //! A scene made ready for rays: explicit fibers, scattering, lights.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, Vec3};
 use lisle_core::scene::{Mesh, Object, Scene, Shading};
@@ -9,7 +10,7 @@ use crate::Error;
 use crate::assembly::{Assembly, Hit, Ray};
 use crate::fibers::{self, Fibers};
 use crate::light::Emitter;
-use crate::material::Scattering;
+use crate::material::{NearField, Scattering};
 use crate::surfaces::{SurfaceHit, Surfaces};
 
 /// What paths are traced through. Its space has the world's axes, with the middle of all yarns at the origin: f32 stays fine there.
@@ -85,6 +86,13 @@ impl World {
             ambient: scene.ambient.as_dvec3(),
             origin,
         })
+    }
+
+    /// Has all fibers scatter by another function.
+    pub fn scatter_by(&mut self, function: &Arc<dyn NearField>) {
+        for object in &mut self.objects {
+            object.scattering = Scattering::near(Arc::clone(function));
+        }
     }
 
     fn object(&self, segment: u32) -> &ObjectFibers {
