@@ -5,6 +5,7 @@
 
 import os
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
@@ -66,8 +67,7 @@ def any_window(request, blender, scene, tmp_path_factory):
         (folder / name).mkdir()
     display = window.Display(folder / "pixels")
     opened = window.Window(blender, display, scene("sound"), folder / "commands", request.param)
-    opened.backend, opened.artefacts = request.param, artefacts()
-    opened.do((HERE / "prelude.py").read_text())
+    opened.artefacts = artefacts()
     yield opened
     code = opened.close()
     display.close()
@@ -78,7 +78,16 @@ def any_window(request, blender, scene, tmp_path_factory):
 def view(any_window, scene):
     """The window with the scene as it was, in Rendered shading, without overlays."""
     any_window.begin()
-    any_window.do(f"bpy.ops.wm.open_mainfile(filepath={str(scene('sound'))!r}, load_ui=False)")
+    opening = f"bpy.ops.wm.open_mainfile(filepath={str(scene('sound'))!r}, load_ui=False)"
+    try:
+        any_window.do(opening)
+    except window.Ended as ended:
+        if any_window.backend != "vulkan":
+            raise
+        # As it does without Lisle: see `any_window`. What a test does itself is not tried again.
+        warnings.warn(f"between two tests {ended}", stacklevel=1)
+        any_window.open()
+        any_window.do(opening)
     any_window.do(
         "bare(); look(); space().shading.type = 'RENDERED'; space().use_render_border = False;"
         "bpy.context.scene.view_settings.view_transform = 'Standard'"

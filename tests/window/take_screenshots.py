@@ -90,7 +90,6 @@ def main():
         display = window.Display(folder / "pixels", SIZE)
         opened = window.Window(blender, display, blend, folder / "commands", "opengl")
         try:
-            opened.do((HERE / "prelude.py").read_text())
             opened.do(SCENE)
             opened.do("bpy.context.window_manager.windows[0].cursor_warp(2, 2)")
             for name, code in PICTURES.items():

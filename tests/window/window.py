@@ -44,19 +44,33 @@ class Display:
         self._server.wait()
 
 
+class Ended(RuntimeError):
+    """Blender has ended by itself."""
+
+
 class Window:
     """A Blender with `blend` open; leaves by `close`."""
 
     def __init__(self, program, display, blend, folder, backend):
-        self._folder, self._count, self._begun, self.display = folder, 0, 0, display
-        environment = program.environment | {"DISPLAY": display.name}
-        command = [program.path, "--gpu-backend", backend, "-p", "0", "0", *map(str, display.size), blend]
-        command += ["--python", HERE / "driver.py", "--", folder]
-        self.log = folder / "log.txt"
+        self._program, self._blend, self._folders, self.display, self.backend = program, blend, folder, display, backend
+        self._opened = 0
+        self.open()
+
+    def open(self):
+        """Starts Blender, another one if it has ended."""
+        self._folder, self._count, self._begun = self._folders / str(self._opened), 0, 0
+        self._folder.mkdir()
+        self._opened += 1
+        environment = self._program.environment | {"DISPLAY": self.display.name}
+        size = map(str, self.display.size)
+        command = [self._program.path, "--gpu-backend", self.backend, "-p", "0", "0", *size, self._blend]
+        command += ["--python", HERE / "driver.py", "--", self._folder]
+        self.log = self._folder / "log.txt"
         with self.log.open("w") as log:
             self.process = subprocess.Popen(
                 list(map(str, command)), stdout=log, stderr=subprocess.STDOUT, env=environment
             )
+        self.do((HERE / "prelude.py").read_text())
 
     def do(self, code, timeout_s=TIMEOUT_S):
         """Executes code in Blender's main thread and returns its variable `answer`."""
@@ -64,7 +78,7 @@ class Window:
         end = time.monotonic() + timeout_s
         while not answer.exists():
             if self.process.poll() is not None:
-                raise RuntimeError(f"Blender ended with {self.process.returncode}:\n{self.last_words()}")
+                raise Ended(f"Blender ended with {self.process.returncode}:\n{self.last_words()}")
             if time.monotonic() > end:
                 raise TimeoutError(f"no answer after {timeout_s} s:\n{self.last_words()}")
             time.sleep(0.005)
