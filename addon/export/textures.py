@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.pixels import LINEAR_SPACES, srgb_from_linear
+from ..core.pixels import srgb_from_linear
+from .images import colours_of, is_linear
 from .nodes import source_of
 
 _MOST_KEPT = 32
@@ -79,14 +80,7 @@ def uvs_of(mesh, name, corners):
 
 def _codes(image, space):
     """(h, w, 3) uint8 sRGB codes, row 0 at the top."""
-    width, height = image.size
-    pixels = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(pixels)
-    pixels = pixels.reshape(height, width, image.channels)[::-1]
-    if image.channels < 3:
-        pixels = np.repeat(pixels[:, :, :1], 3, axis=2)
-    pixels = np.clip(np.nan_to_num(pixels[:, :, :3]), 0, 1)
-    # Blender brings pictures of floats into its scene's space when it loads them.
-    if image.is_float or space in LINEAR_SPACES:
+    pixels = np.clip(np.nan_to_num(colours_of(image)), 0, 1)
+    if is_linear(image, space):
         pixels = srgb_from_linear(pixels)
     return np.round(255 * pixels).astype(np.uint8)

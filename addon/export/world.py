@@ -8,8 +8,9 @@ import bpy
 import numpy as np
 
 from ..core.errors import SceneError
-from ..core.pixels import LINEAR_SPACES, linear_from_srgb
+from ..core.pixels import linear_from_srgb
 from . import textures
+from .images import colours_of, is_linear
 from .nodes import source_of
 
 _MOST_KEPT = 4
@@ -151,12 +152,5 @@ def _native_image(lisle, image):
 
 def _radiance(image, space):
     """(h, w, 3) float32, row 0 at the top."""
-    width, height = image.size
-    pixels = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(pixels)
-    pixels = pixels.reshape(height, width, image.channels)[::-1]
-    if image.channels < 3:
-        pixels = np.repeat(pixels[:, :, :1], 3, axis=2)
-    pixels = np.nan_to_num(np.maximum(pixels[:, :, :3], 0), posinf=np.finfo(np.float32).max)
-    # Blender brings pictures of floats into its scene's space when it loads them.
-    return pixels if image.is_float or space in LINEAR_SPACES else linear_from_srgb(pixels)
+    pixels = np.nan_to_num(np.maximum(colours_of(image), 0), posinf=np.finfo(np.float32).max)
+    return pixels if is_linear(image, space) else linear_from_srgb(pixels)

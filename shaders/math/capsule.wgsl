@@ -111,6 +111,36 @@ fn line_span(w: LineWalk, i: i32) -> vec2i {
     );
 }
 
+// A pixel of a walk: the column or row, and the range across that begins with it. One loop goes over all of them: threads that run
+// abreast wait for the one with most pixels in all, not in each column.
+struct WalkPlace {
+    i: i32,
+    span: vec2i,
+}
+
+fn walk_begin(w: LineWalk, parts: Parts) -> WalkPlace {
+    let i = first_turn(w.first, parts);
+    return WalkPlace(i, line_span(w, i));
+}
+
+// A range may be empty, and so may the walk.
+fn walk_is_on_pixel(w: LineWalk, place: WalkPlace) -> bool {
+    return place.i <= w.last && place.span.x <= place.span.y;
+}
+
+fn walk_pixel(w: LineWalk, place: WalkPlace) -> vec2i {
+    return select(vec2i(place.span.x, place.i), vec2i(place.i, place.span.x), w.flat);
+}
+
+fn walk_next(w: LineWalk, place: WalkPlace, parts: Parts) -> WalkPlace {
+    var next = WalkPlace(place.i, vec2i(place.span.x + 1, place.span.y));
+    if next.span.x > next.span.y {
+        next.i += i32(parts.count);
+        next.span = line_span(w, next.i);
+    }
+    return next;
+}
+
 // Threads that share a line: they take columns or rows in turn. `count` is a power of two.
 struct Parts {
     count: u32,

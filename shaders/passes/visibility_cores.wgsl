@@ -11,12 +11,11 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
     let chord = b.depth - a.depth;
     let owner = key_owner(segment, slot);
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    var i = first_turn(walk.first, parts);
-    var span = line_span(walk, i);
+    var place = walk_begin(walk, parts);
     loop {
-        let pixel = select(vec2i(span.x, i), vec2i(i, span.x), walk.flat);
+        let pixel = walk_pixel(walk, place);
         let hit = core_hit(a, b, vec2f(pixel) + 0.5);
-        if i <= walk.last && span.x <= span.y && hit.covered && abs(hit.v) <= yarn.core_half_width {
+        if walk_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= yarn.core_half_width {
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
             let chosen = core_texture(yarn, hit.depth_share, detail.fibers, core_chance(vec2u(pixel)));
             let height = core_height_at(yarn, core_texel(yarn, chosen, hit.turns, hit.v));
@@ -31,12 +30,8 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
                 store_key(tile_index(pixel), key);
             }
         }
-        span.x++;
-        if span.x > span.y {
-            i += i32(parts.count);
-            span = line_span(walk, i);
-        }
-        if i > walk.last {
+        place = walk_next(walk, place, parts);
+        if place.i > walk.last {
             break;
         }
     }

@@ -36,14 +36,12 @@ fn stroke_key(line: Line, stroke: Stroke, hit: LineHit) -> Key {
     return make_key(stroke.owner, line_depth(line, share) + behind - bulge, place);
 }
 
-// One loop over columns and the pixels in them: threads that run abreast wait for the one with most pixels in all, not in each column.
 fn draw_line(line: Line, stroke: Stroke, parts: Parts) {
     let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    var i = first_turn(walk.first, parts);
-    var span = line_span(walk, i);
+    var place = walk_begin(walk, parts);
     loop {
-        if i <= walk.last && span.x <= span.y {
-            let pixel = select(vec2i(span.x, i), vec2i(i, span.x), walk.flat);
+        if walk_is_on_pixel(walk, place) {
+            let pixel = walk_pixel(walk, place);
             let hit = line_hit(line, vec2f(pixel) + 0.5);
             // The software driver stores one thread's key after the other: chosen before, it is made for all of them at once.
             var key = Key(0u, 0u);
@@ -54,12 +52,8 @@ fn draw_line(line: Line, stroke: Stroke, parts: Parts) {
                 store_key(tile_index(pixel), key);
             }
         }
-        span.x++;
-        if span.x > span.y {
-            i += i32(parts.count);
-            span = line_span(walk, i);
-        }
-        if i > walk.last {
+        place = walk_next(walk, place, parts);
+        if place.i > walk.last {
             break;
         }
     }

@@ -9,7 +9,7 @@ from pathlib import Path
 import lisle
 import mitsuba as mi
 import numpy as np
-from test_mitsuba import BLOCK, CHORD_ERROR, DOWN, IRRADIANCE, SIZE, SKY, camera, yarn, yarns
+from test_mitsuba import BLOCK, CHORD_ERROR, SIZE, camera, mitsuba_scene, yarn, yarns
 
 OUT = Path(__file__).parents[2] / "native" / "reference" / "tests" / "mitsuba" / "hair.txt"
 
@@ -41,31 +41,6 @@ def through(points):
     return np.linalg.solve(matrix, np.concatenate([[0 * points[0]], 6 * points, [0 * points[0]]]))
 
 
-def scene(file, bounces):
-    view = camera()
-    angle = 2 * np.degrees(np.arctan(1 / view.clip_from_camera[1, 1]))
-    to_world = view.world_from_camera @ np.diag([-1.0, 1.0, -1.0, 1.0])
-    film = {"type": "hdrfilm", "width": SIZE[0], "height": SIZE[1], "rfilter": {"type": "box"}, "pixel_format": "rgb"}
-    return mi.load_dict(
-        {
-            "type": "scene",
-            "integrator": {"type": "path", "max_depth": bounces + 1, "rr_depth": 8},
-            "fibers": {"type": "bsplinecurve", "filename": str(file), "bsdf": HAIR},
-            "sun": {"type": "directional", "direction": DOWN, "irradiance": {"type": "rgb", "value": IRRADIANCE}},
-            "sky": {"type": "constant", "radiance": {"type": "rgb", "value": SKY}},
-            "sensor": {
-                "type": "perspective",
-                "fov": angle,
-                "fov_axis": "y",
-                "near_clip": 1e-3,
-                "far_clip": 1e4,
-                "to_world": mi.ScalarTransform4f(to_world),
-                "film": film,
-            },
-        }
-    )
-
-
 def main():
     mi.set_variant("scalar_rgb")
     mi.set_log_level(mi.LogLevel.Error)
@@ -90,7 +65,7 @@ def main():
     for points in np.split(curves.points, curves.offsets[1:-1]):
         text += row("curve", points)
     for name, bounces in (("direct", 1), ("two", 2)):
-        shown = scene(file, bounces)
+        shown = mitsuba_scene({"type": "bsplinecurve", "filename": str(file), "bsdf": HAIR}, bounces)
         rounds = np.stack([np.array(mi.render(shown, spp=SAMPLES, seed=i))[..., 0] for i in range(ROUNDS)])
         shape = (ROUNDS, SIZE[1] // BLOCK, BLOCK, SIZE[0] // BLOCK, BLOCK)
         blocks = rounds.astype(np.float64).reshape(shape).mean(axis=(2, 4)).reshape(ROUNDS, -1)

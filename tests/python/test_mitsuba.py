@@ -97,6 +97,34 @@ def by_lisle(bounces, seed, albedo=ALBEDO):
     return np.stack(pictures)
 
 
+def mitsuba_scene(fibers, bounces):
+    """Fibers as Mitsuba describes them, under the same light and before the same camera."""
+    view = camera()
+    angle = 2 * np.degrees(np.arctan(1 / view.clip_from_camera[1, 1]))
+    # Mitsuba's camera looks along its +Z with +X to the left.
+    to_world = view.world_from_camera @ np.diag([-1.0, 1.0, -1.0, 1.0])
+    film = {"type": "hdrfilm", "width": SIZE[0], "height": SIZE[1], "rfilter": {"type": "box"}, "pixel_format": "rgb"}
+    return mi.load_dict(
+        {
+            "type": "scene",
+            # Its depth counts segments of a path, the one from the camera included, and light that is met as one more.
+            "integrator": {"type": "path", "max_depth": -1 if bounces is None else bounces + 1, "rr_depth": 8},
+            "fibers": fibers,
+            "sun": {"type": "directional", "direction": DOWN, "irradiance": {"type": "rgb", "value": IRRADIANCE}},
+            "sky": {"type": "constant", "radiance": {"type": "rgb", "value": SKY}},
+            "sensor": {
+                "type": "perspective",
+                "fov": angle,
+                "fov_axis": "y",
+                "near_clip": 1e-3,
+                "far_clip": 1e4,
+                "to_world": mi.ScalarTransform4f(to_world),
+                "film": film,
+            },
+        }
+    )
+
+
 def by_mitsuba(bounces, seed, folder):
     """The same by Mitsuba, of the fibers that Lisle exports."""
     made = lisle.fibers(yarns(), yarn(), chord_error=CHORD_ERROR)
@@ -107,39 +135,8 @@ def by_mitsuba(bounces, seed, folder):
             radii = np.maximum(made.radii[start:end], 1e-3 * made.radii.max())
             np.savetxt(out, np.column_stack([made.points[start:end], radii]), fmt="%.9g")
             out.write("\n")
-    view = camera()
-    angle = 2 * np.degrees(np.arctan(1 / view.clip_from_camera[1, 1]))
-    # Mitsuba's camera looks along its +Z with +X to the left.
-    to_world = view.world_from_camera @ np.diag([-1.0, 1.0, -1.0, 1.0])
-    scene = mi.load_dict(
-        {
-            "type": "scene",
-            # Its depth counts segments of a path, the one from the camera included, and light that is met as one more.
-            "integrator": {"type": "path", "max_depth": -1 if bounces is None else bounces + 1, "rr_depth": 8},
-            "fibers": {
-                "type": "linearcurve",
-                "filename": str(file),
-                "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": ALBEDO}},
-            },
-            "sun": {"type": "directional", "direction": DOWN, "irradiance": {"type": "rgb", "value": IRRADIANCE}},
-            "sky": {"type": "constant", "radiance": {"type": "rgb", "value": SKY}},
-            "sensor": {
-                "type": "perspective",
-                "fov": angle,
-                "fov_axis": "y",
-                "near_clip": 1e-3,
-                "far_clip": 1e4,
-                "to_world": mi.ScalarTransform4f(to_world),
-                "film": {
-                    "type": "hdrfilm",
-                    "width": SIZE[0],
-                    "height": SIZE[1],
-                    "rfilter": {"type": "box"},
-                    "pixel_format": "rgb",
-                },
-            },
-        }
-    )
+    diffuse = {"type": "diffuse", "reflectance": {"type": "rgb", "value": ALBEDO}}
+    scene = mitsuba_scene({"type": "linearcurve", "filename": str(file), "bsdf": diffuse}, bounces)
     return np.stack(
         [np.array(mi.render(scene, spp=SAMPLES, seed=1000 * seed + i))[..., 0] for i in range(ROUNDS)]
     ).astype(np.float64)

@@ -160,10 +160,7 @@ def _triangles(
         )
     at_corners = None
     if normals is not None:
-        try:
-            at_corners = np.asarray(normals, np.float32)
-        except (TypeError, ValueError):
-            raise InputError(f"{name}: normals: expected an array, got {type(normals).__name__}") from None
+        at_corners = _floats(f"{name}: normals", normals)
         if at_corners.shape == points.shape and at_corners.shape != (*corners.shape, 3):
             at_corners = at_corners[corners]
         if at_corners.shape != (*corners.shape, 3):
@@ -173,13 +170,17 @@ def _triangles(
         at_corners = np.ascontiguousarray(at_corners)
     places = None
     if uvs is not None:
-        try:
-            places = np.ascontiguousarray(uvs, np.float32)
-        except (TypeError, ValueError):
-            raise InputError(f"{name}: uvs: expected an array, got {type(uvs).__name__}") from None
+        places = np.ascontiguousarray(_floats(f"{name}: uvs", uvs))
         if places.shape != (*corners.shape, 2):
             raise InputError(f"{name}: uvs: expected shape {(*corners.shape, 2)}, got {places.shape}")
     return _native.Triangles(points, corners.astype(np.uint32), at_corners, places)
+
+
+def _floats(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float32]:
+    try:
+        return np.asarray(value, np.float32)
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: expected an array, got {type(value).__name__}") from None
 
 
 def _array(name: str, value: npt.ArrayLike, kind: type[np.generic]) -> npt.NDArray[Any]:
