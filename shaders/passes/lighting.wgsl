@@ -94,7 +94,8 @@ const SHARED_OVER_WIDTH: f32 = 2.0 / 3.0;
 // Share of a light in the section's direction `l` that the yarn's own fibers let through to a place in it.
 fn share_let_through(yarn: Yarn, seen: SeenPoint, at: vec2f, l: vec2f, shared_depth: f32) -> f32 {
     let depth = self_depth(yarn, at, l);
-    let half = 0.5 * acos(clamp(dot(l, seen.view), -1.0, 1.0));
+    // Not acos of their product, which is coarse where they nearly agree.
+    let half = asin(min(0.5 * length(l - seen.view), 1.0));
     let in_common = seen.common_depth * (1.0 / max(tan(half), 1e-6) - 0.5 * PI + half);
     let most = max(shared_depth * min(depth, seen.depth_to_viewer), 1e-9);
     return exp(most * (1.0 - exp(-in_common / most)) - depth);
@@ -150,7 +151,7 @@ fn self_occlusion(yarn: Yarn, section: SectionPoint) -> f32 {
         }
         return square_table(yarn.occlusion_table, yarn.occlusion_size, yarn.occlusion_extent, section.position);
     }
-    let r = min(length(section.position), 1.0);
+    let r = min(length(section.position), yarn.occlusion_extent);
     let k = yarn.occlusion_cubic;
     return clamp(k.x + (k.y + (k.z + k.w * r) * r) * r, 0.0, 1.0);
 }

@@ -9,6 +9,8 @@ mod frame;
 mod image;
 mod knots;
 mod layout;
+#[cfg(test)]
+mod lighting_tests;
 mod lights;
 mod mesh_raster;
 mod meshes;
