@@ -1,4 +1,4 @@
-//! The benchmark: every yarn file at hand and a garment of 2 M control points, close, worst and full view, both shadings; ten million
+//! The benchmark: every yarn file at hand and a garment of 2 M control points, close, worst and full view, all shading models; ten million
 //! fiber segments; one frame of an animation. It prints Markdown, with the targets beside the figures, and never fails on timing.
 
 mod animation;

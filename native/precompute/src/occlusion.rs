@@ -110,12 +110,12 @@ impl Occlusion {
         Self { size: SIZE, extent: EXTENT as f32, visibility, cubic }
     }
 
-    /// Bilinear lookup at a point of the section.
+    /// Bilinear lookup at a point of the section; the same as `self_occlusion` in `shaders/passes/lighting.wgsl`.
     pub fn at(&self, q: DVec2) -> f64 {
         bilinear(&self.visibility, self.size, f64::from(self.extent), q)
     }
 
-    /// The distance-based approximation at a point of the section.
+    /// The distance-based approximation at a point of the section; the other half of `self_occlusion`.
     pub fn at_distance(&self, q: DVec2) -> f64 {
         DVec4::from(self.cubic.map(f64::from)).dot(powers(q.length().min(EXTENT))).clamp(0.0, 1.0)
     }

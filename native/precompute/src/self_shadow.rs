@@ -146,6 +146,7 @@ impl SelfShadow {
     }
 
     /// Optical depth towards a light for a point that a viewer sees: both directions as angles in the section, radians.
+    /// Shaders have the same in `self_shadows` (`shaders/passes/lighting.wgsl`): renderer and rays through explicit fibers are both compared with this.
     ///
     /// No fiber lies between the point and the viewer, so that none is there to shade it either: what the two rays share of
     /// the depth is to be left out (the \"hot spot\" of canopies of leaves [Kuusk1991]). A fiber of radius r blocks both rays if its centre lies within r of
@@ -157,7 +158,7 @@ impl SelfShadow {
         light - in_common(self.unit_in_common(q), angle, light.min(view))
     }
 
-    /// Optical depth towards a light for a fiber that a viewer sees at q, for light that it takes in over its width.
+    /// Optical depth towards a light for a fiber that a viewer sees at q, for light that it takes in over its width; the same as in `self_shadows`.
     ///
     /// Such light enters on the side that faces it, not at q. Over a width that is drawn evenly, an edge is on average πr/4 before the axis, so that
     /// the mean place where light enters is πr/4 (l − v) from the mean place that is seen. Nor do the two rays share all of their way if light and viewer are in one
@@ -170,7 +171,7 @@ impl SelfShadow {
         light - in_common(self.unit_in_common(q), angle, SHARED_OVER_WIDTH * light.min(view))
     }
 
-    /// Share of the sky that is open to a point that a viewer sees, above the mean over points there, seen or not.
+    /// Share of the sky that is open to a point that a viewer sees, above the mean over points there, seen or not; `sky_of_seen` in shaders.
     pub fn sky_of_seen(&self, psi_view: f64, q: DVec2) -> f64 {
         let (depth, unit) = (self.at(psi_view, q), self.unit_in_common(q));
         let place = DVec2::new(depth / (1.0 + depth), (unit / (unit + HALF_WAY)).sqrt());

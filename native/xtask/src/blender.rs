@@ -64,8 +64,8 @@ impl Modules {
         Ok((modules, missing))
     }
 
-    /// The first release whose Python is on this machine.
-    pub fn newest() -> Result<Self, Failure> {
+    /// The first of [`RELEASES`] whose Python is on this machine.
+    fn preferred() -> Result<Self, Failure> {
         let found = interpreters();
         for (release, version) in RELEASES {
             if let Some(interpreter) = found.iter().find(|interpreter| interpreter.version == version) {
@@ -87,9 +87,55 @@ impl Modules {
     }
 }
 
-/// The program on PATH, if it is recent enough.
-pub fn on_path() -> Option<String> {
-    let text = output("blender", command("blender").arg("--version")).ok()?;
+/// Blender, as this machine has it.
+pub enum Blender {
+    /// On PATH, with its version.
+    Program(String),
+    /// In a virtual environment.
+    Module(Modules),
+}
+
+impl Blender {
+    /// The program on PATH, if it is recent enough. The module is fetched only where there is none.
+    pub fn found() -> Result<Self, Failure> {
+        Self::choose(on_path(), Modules::preferred)
+    }
+
+    fn choose(program: Option<String>, modules: impl FnOnce() -> Result<Modules, Failure>) -> Result<Self, Failure> {
+        match program {
+            Some(version) => Ok(Self::Program(version)),
+            None => modules().map(Self::Module),
+        }
+    }
+
+    /// Its tool for extensions.
+    pub fn extension_tool(&self) -> Result<Command, Failure> {
+        match self {
+            Self::Program(_) => {
+                let mut blender = command("blender");
+                blender.args(["--factory-startup", "--command", "extension"]);
+                Ok(blender)
+            }
+            Self::Module(modules) => modules.extension_tool(),
+        }
+    }
+
+    /// With settings in a folder of its own.
+    pub fn host(self, settings: PathBuf) -> Host {
+        match self {
+            Self::Program(version) => Host::program(&version, settings),
+            Self::Module(modules) => Host::module(modules, settings),
+        }
+    }
+}
+
+/// The version of the program on PATH, if it is recent enough.
+fn on_path() -> Option<String> {
+    recent(&output("blender", command("blender").arg("--version")).ok()?)
+}
+
+/// The version that Blender says it has, unless it is too old.
+fn recent(text: &str) -> Option<String> {
     let version = text.split_whitespace().nth(1)?;
     let mut numbers = version.split('.').map_while(|number| number.parse::<u32>().ok());
     let release = (numbers.next()?, numbers.next()?);
@@ -105,8 +151,7 @@ pub struct Host {
 }
 
 impl Host {
-    /// The program on PATH.
-    pub fn program(version: &str, settings: PathBuf) -> Self {
+    fn program(version: &str, settings: PathBuf) -> Self {
         let run = |script: &Path| {
             let mut blender = command("blender");
             blender.args(["--background", "--python-exit-code", "1", "--python"]).arg(script).arg("--");
@@ -115,8 +160,7 @@ impl Host {
         Self { run: Box::new(run), name: format!("Blender {version}"), settings }
     }
 
-    /// The module.
-    pub fn module(modules: Modules, settings: PathBuf) -> Self {
+    fn module(modules: Modules, settings: PathBuf) -> Self {
         let name = format!("Blender {} (bpy)", modules.release);
         let run = move |script: &Path| {
             let mut python = modules.environment.python();
@@ -141,5 +185,20 @@ impl Host {
             let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/install_extension.py");
             run("installing the extension", self.script(&script).arg(archive).arg(MODULE))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_module_is_fetched_only_where_no_recent_blender_is_on_path() {
+        let fetch = || Err(Failure::new("fetching bpy", "it was asked for"));
+        let found = Blender::choose(recent("Blender 5.2.2 LTS\n\tbuild date: 2026-10-20\n"), fetch);
+        assert!(matches!(found, Ok(Blender::Program(version)) if version == "5.2.2"));
+        for text in ["Blender 4.4.3", "no such program", ""] {
+            assert!(Blender::choose(recent(text), fetch).is_err(), "{text}");
+        }
     }
 }

@@ -1,15 +1,15 @@
 //! The Blender extension: a copy of `addon/` with the wheel in it, packed and checked by Blender's own tool.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use crate::blender::Modules;
 use crate::failure::Failure;
 use crate::shell::{folder, output, root, say, target};
 
 const ID: &str = "lisle_blender";
 
-/// Builds the archive and returns its path.
-pub fn build(wheel: &Path, blender: &Modules) -> Result<PathBuf, Failure> {
+/// Builds the archive with Blender's tool for extensions and returns its path.
+pub fn build(wheel: &Path, tool: impl Fn() -> Result<Command, Failure>) -> Result<PathBuf, Failure> {
     say("Packing the extension");
     let name = wheel.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let platform = platform(&name)?;
@@ -25,11 +25,11 @@ pub fn build(wheel: &Path, blender: &Modules) -> Result<PathBuf, Failure> {
     std::fs::write(&manifest, packaged(&text, &name, platform)?).map_err(|error| failed(&manifest, error))?;
 
     let archive = target().join("extension").join(format!("{ID}-{}-{platform}.zip", env!("CARGO_PKG_VERSION")));
-    let mut build = blender.extension_tool()?;
+    let mut build = tool()?;
     build.args(["build", "--source-dir"]).arg(&source).arg("--output-filepath").arg(&archive);
-    output("blender_ext.py build", &mut build)?;
-    let mut validate = blender.extension_tool()?;
-    let said = output("blender_ext.py validate", validate.arg("validate").arg(&archive))?;
+    output("building the extension", &mut build)?;
+    let mut validate = tool()?;
+    let said = output("validating the extension", validate.arg("validate").arg(&archive))?;
     println!("{}", said.trim());
     Ok(archive)
 }

@@ -62,9 +62,9 @@ fn main() -> ExitCode {
 
 /// The extension for other machines: its wheel runs on any Linux that Blender runs on.
 fn package() -> Result<(), Failure> {
-    let blender = blender::Modules::newest()?;
+    let blender = blender::Blender::found()?;
     let wheel = wheel::portable()?;
-    let archive = extension::build(&wheel, &blender)?;
+    let archive = extension::build(&wheel, || blender.extension_tool())?;
     println!("{}", archive.display());
     Ok(())
 }

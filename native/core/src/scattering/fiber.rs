@@ -27,9 +27,9 @@ use super::{
 /// - a Lambert term albedo/π max(n·ω_i, 0) at the surface normal n of the point, x in these axes. Its mean over the width is that of a
 ///   Lambert cylinder, so both terms share a unit. It is mixed as the renderer mixes it: [`physical_reflected`], [`simple_reflected`].
 ///
-/// **Continuing rays** (to lights as well) start where they have left the fiber: after [`super::distance_inside`]. For n·ω_i ≥ 0 that is the hit
-/// itself; for others the fiber's other side. The light that reaches a straight fiber there is L_i of the formula as long as no other
-/// fiber is inside this one. S holds all that happens inside: hits of the same fiber before that distance are to be ignored.
+/// **Continuing rays** (to lights as well): S is for light that is even over the fiber's width. Where it is not, a ray from a place on the width
+/// that is drawn evenly, seen from where the ray goes, takes its mean. Lambert's term takes in light at the hit itself. S holds all that happens
+/// inside: hits of the same fiber before the ray has left it are to be ignored.
 ///
 /// **What holds.** Light is conserved: [`Self::albedo`] ≤ 1. Reciprocity, f(ω_o, ω_i) cos θ_o = f(ω_i, ω_o) cos θ_i for the fiber's part, holds for `Simple` and
 /// `Thread` but not for `Physical`, whose lobes are normalised by the light's θ_i alone. So a white `Physical` fiber gives back all light, but seen at a

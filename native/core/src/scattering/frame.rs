@@ -30,17 +30,6 @@ impl FiberFrame {
     }
 }
 
-/// Distance, in the unit of `radius`, that a ray from the surface of a straight fiber stays inside of it: 0 for directions that
-/// leave at once, infinite along the fiber. `direction` is in the axes of [`FiberFrame`].
-///
-/// The surface is (1, 0) across the fiber in units of the radius: |(1, 0) + t (x, y)| = 1 at t = −2x / (x² + y²).
-pub fn distance_inside(radius: f64, direction: DVec3) -> f64 {
-    if direction.x >= 0.0 {
-        return 0.0;
-    }
-    -2.0 * radius * direction.x / (direction.x * direction.x + direction.y * direction.y)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,15 +44,5 @@ mod tests {
             let direction = DVec3::new(0.1, -0.7, 0.3);
             assert!((frame.local_from_world(frame.world_from_local(direction)) - direction).length() < 1e-12);
         }
-    }
-
-    #[test]
-    fn a_ray_leaves_the_fiber_on_its_surface() {
-        for direction in [DVec3::new(-1.0, 0.0, 0.0), DVec3::new(-0.3, 0.5, 0.8), DVec3::new(-0.01, -0.9, 0.1)] {
-            let end = DVec3::X * 2.0 + direction * distance_inside(2.0, direction);
-            assert!((end.truncate().length() - 2.0).abs() < 1e-12);
-        }
-        assert_eq!(distance_inside(1.0, DVec3::new(0.5, 0.5, 0.0)), 0.0);
-        assert_eq!(distance_inside(1.0, DVec3::new(-1e-200, 0.0, 1.0)), f64::INFINITY);
     }
 }

@@ -28,7 +28,7 @@ pub use angles::FiberAngles;
 pub use azimuthal::{von_mises, von_mises_scale};
 pub use fabrics::{FABRICS, Fabric, fabric_threads};
 pub use fiber::{FiberScattering, PhysicalFiber, ScatteringSample, SimpleFiber};
-pub use frame::{FiberFrame, distance_inside};
+pub use frame::FiberFrame;
 pub use longitudinal::{gaussian, gaussian_integral};
 pub use material::{MATERIAL_NAMES, MIN_WIDTH_RAD, Material, MaterialError};
 pub use multiple::cloth_color;
