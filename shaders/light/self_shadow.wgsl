@@ -21,16 +21,22 @@ struct Tube {
     tangent: vec3f,
 }
 
-// How far along `direction` a point must go to leave the tube.
-fn distance_out_of_tube(tube: Tube, position: vec3f, direction: vec3f) -> f32 {
+// How far along `direction` a point must go to have the tube behind it: all of it that lies within `reach` beside the way, since texels of a
+// shadow map show that, too. From where the way is nearest to the axis, at y beside it and at an angle alpha to it, the surface is
+// sqrt(r² - y²) / sin(alpha) off, and `reach` on along the axis, reach / tan(alpha) more.
+fn distance_clear_of_tube(tube: Tube, position: vec3f, direction: vec3f, reach: f32) -> f32 {
     let offset = position - tube.center;
     let o = offset - tube.tangent * dot(offset, tube.tangent);
-    let d = direction - tube.tangent * dot(direction, tube.tangent);
-    let a = max(dot(d, d), 1e-4);
-    let b = dot(o, d);
-    let discriminant = b * b - a * (dot(o, o) - tube.radius * tube.radius);
-    if discriminant <= 0.0 {
+    let along = dot(direction, tube.tangent);
+    let d = direction - tube.tangent * along;
+    let sine_squared = max(dot(d, d), 1e-4);
+    let to_axis = -dot(o, d) / sine_squared;
+    let y = sqrt(max(dot(o, o) - sine_squared * to_axis * to_axis, 0.0));
+    let nearest = max(y - reach, 0.0);
+    let left = tube.radius * tube.radius - nearest * nearest;
+    if left <= 0.0 {
         return 0.0;
     }
-    return clamp((sqrt(discriminant) - b) / a, 0.0, 4.0 * tube.radius);
+    let off = (sqrt(left) + reach * abs(along)) * inverseSqrt(sine_squared);
+    return clamp(to_axis + off, 0.0, 4.0 * (tube.radius + reach));
 }

@@ -213,30 +213,31 @@ fn cube_face(direction: vec3f) -> u32 {
     return select(5u, 4u, direction.z > 0.0);
 }
 
-// A yarn's own tube must not shade it: its fibers do that in self_shadow. The point is moved out of the tube first.
+// A yarn's own tube must not shade it: its fibers do that in self_shadow. The point is moved out of the tube first, and a bent one is not
+// straight by about this much of its radius.
 const SHADOW_BIAS: f32 = 0.5;
+
+// What other yarns do to light that comes to a tube's point from a direction.
+fn tube_shadow(view_index: u32, tube: Tube, position: vec3f, direction: vec3f) -> Shadow {
+    let view = shadow_views[view_index];
+    let texel = to_pixel(view.texel_from_render, position).z / view.texels_per_unit;
+    let way_out = distance_clear_of_tube(tube, position, direction, 0.5 * f32(FILTER) * texel);
+    return shadow_map(view_index, position + direction * way_out, SHADOW_BIAS * tube.radius);
+}
 
 fn light_shadow(light: Light, incident: Incident, tube: Tube, position: vec3f) -> Shadow {
     if light.shadow_view_count == 0u {
         return Shadow(1.0, 0.0, 0.0);
     }
-    let way_out = distance_out_of_tube(tube, position, incident.direction);
-    let outside = position + incident.direction * way_out;
     var view = light.shadow_view;
     if light.shadow_view_count == 6u {
-        view += cube_face(outside - light.position);
+        view += cube_face(position - light.position);
     }
-    return shadow_map(view, outside, SHADOW_BIAS * tube.radius);
+    return tube_shadow(view, tube, position, incident.direction);
 }
 
 // Towards the sky that a view of this sample shows.
 fn sky_direction(view_index: u32) -> vec3f {
     let m = shadow_views[view_index].texel_from_render;
     return -vec3f(m[0].w, m[1].w, m[2].w);
-}
-
-// Share of that sky's light that other yarns let through.
-fn sky_open(view_index: u32, direction: vec3f, tube: Tube, position: vec3f) -> Shadow {
-    let outside = position + direction * distance_out_of_tube(tube, position, direction);
-    return shadow_map(view_index, outside, SHADOW_BIAS * tube.radius);
 }

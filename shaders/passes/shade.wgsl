@@ -70,7 +70,7 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
     var i = 0u;
     loop {
         let direction = sky_direction(frame.sky_view + i);
-        let shadow = sky_open(frame.sky_view + i, direction, surface.tube, surface.position);
+        let shadow = tube_shadow(frame.sky_view + i, surface.tube, surface.position, direction);
         let by_yarns = (1.0 - shadow.open - shadow.solid) * (1.0 - yarn.through_circle);
         let open = 1.0 - shadow.solid - by_yarns;
         around.open += share * open;

@@ -131,6 +131,32 @@ fn a_yarns_own_tube_takes_no_light_from_any_side() {
 }
 
 #[test]
+fn a_lone_yarn_is_as_bright_by_coarse_shadow_maps() {
+    // A texel of 0.06, 0.7 and 2.5 of the yarn's radii.
+    let yarn = object(&yarns_of(curves::straight(4.0, 60), false, 0.05), &preset("cotton-1"));
+    let camera = orthographic(looking(DVec3::new(0.0, -3.0, 0.0), DVec3::ZERO), 0.3, SIZE, [0.0, 0.0]);
+    let mut failures = Vec::new();
+    for (name, toward) in [
+        ("in front", DVec3::new(-0.3, -1.0, 0.4)),
+        ("beside", DVec3::new(0.1, 0.1, 1.0)),
+        ("along", DVec3::new(1.0, -0.3, 0.1)),
+        ("behind", DVec3::new(0.2, 1.0, 0.4)),
+    ] {
+        let bright = |shadow_resolution: u32| {
+            let scene = Scene { lights: vec![sun_from(toward.normalize())], ..dark(yarn.clone(), camera) };
+            measure::brightness(&draw(&scene, &Settings { samples: 8, shadow_resolution, ..sharp(SIZE) }))
+        };
+        let fine = bright(1280);
+        let coarse = [120, 40].map(|resolution| bright(resolution) / fine - 1.0);
+        println!("{name}: {fine:.5}, by coarser maps {coarse:+.4?}");
+        if coarse.iter().any(|difference| difference.abs() > 0.04) {
+            failures.push(name);
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
+#[test]
 fn the_formulas_of_another_light_are_rejected() {
     let material = Material::preset("cotton-2").expect("preset");
     let fiber = lone_fiber(material);
