@@ -13,13 +13,18 @@ out.mkdir(parents=True, exist_ok=True)
 
 
 def sleeve(angle_deg):
-    """The sleeve about an arm bent by that angle: an upper arm along +Z, an elbow of 60 mm radius, a forearm."""
-    bend, radius = radians(max(angle_deg, 1e-3)), 0.06 / max(radians(angle_deg), 0.05)
-    line = [(0.0, 0.0, 0.01 * i) for i in range(9)]
-    line += [(radius * (1 - cos(bend * i / 8)), 0.0, 0.08 + radius * sin(bend * i / 8)) for i in range(1, 9)]
+    """The sleeve about an arm bent by that angle: an upper arm along +Z, an elbow that keeps its length, a forearm.
+
+    Its courses are so few that they have room on the inside of the elbow: where a line bends with a radius of 120 mm, a
+    tube of 34 mm about it is shorter by 34 / 120 there.
+    """
+    bend = radians(max(angle_deg, 1))
+    radius = 0.12 * radians(70) / bend
+    line = [(0.0, 0.0, 0.0075 * i) for i in range(8)]
+    line += [(radius * (1 - cos(bend * i / 24)), 0.0, 0.06 + radius * sin(bend * i / 24)) for i in range(25)]
     x, _, z = line[-1]
-    line += [(x + sin(bend) * 0.01 * i, 0.0, z + cos(bend) * 0.01 * i) for i in range(1, 9)]
-    return lisle.knit_sleeve(line, radius=0.03, pattern="rib-1-1", courses=56, wales=28)
+    line += [(x + sin(bend) * 0.0075 * i, 0.0, z + cos(bend) * 0.0075 * i) for i in range(1, 9)]
+    return lisle.knit_sleeve(line, radius=0.034, pattern="rib-1-1", courses=40, wales=28)
 
 
 rest = sleeve(0)

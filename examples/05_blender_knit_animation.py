@@ -27,13 +27,16 @@ def enable_lisle():
 
 
 def add_cloth():
-    """The yarn as a Curves object: its points and radii are all that Lisle needs."""
+    """The yarn as a Curves object: its points and radii are all that Lisle needs.
+
+    It is an eighth larger than it was knitted: room for its yarns when the cloth narrows and leans.
+    """
     import lisle
 
-    yarns = lisle.knit_swatch("stockinette", courses=20, wales=12)
+    yarns = lisle.knit_swatch("stockinette", courses=18, wales=11)
     data = bpy.data.hair_curves.new("Knit")
     data.add_curves([int(b - a) for a, b in zip(yarns.offsets[:-1], yarns.offsets[1:], strict=True)])
-    data.position_data.foreach_set("vector", yarns.points.ravel())
+    data.position_data.foreach_set("vector", 1.125 * yarns.points.ravel())
     radius = data.attributes.get("radius") or data.attributes.new("radius", "FLOAT", "POINT")
     radius.data.foreach_set("value", yarns.radii)
     cloth = bpy.data.objects.new("Knit", data)

@@ -1,7 +1,7 @@
 """The picture at the top of the README: a striped stockinette swatch in folds, one yarn in three colours."""
 
 import argparse
-from math import radians, tan
+from math import pi, radians, tan
 from pathlib import Path
 
 import lisle
@@ -43,14 +43,28 @@ def wool(red, green, blue):
     )
 
 
-# Folds: the flat swatch is bent along X into waves whose arcs keep its length, roughly.
+def folds(points, askew=(70 / 71, 12 / 71), waves_per_m=11.3, slope_deg=26):
+    """A flat cloth bent to and fro along a line askew: its middle keeps all lengths."""
+    x, y, z = points.T
+    across, up = askew
+    along, beside = across * x + up * z, across * z - up * x
+
+    def angle(s):
+        return radians(slope_deg) * np.cos(2 * pi * waves_per_m * s)
+
+    def way(component):
+        s = np.linspace(-0.2, 0.2, 20001)
+        total = np.cumsum(component(angle(s))) * (s[1] - s[0])
+        return np.interp(along, s, total) - np.interp(0, s, total)
+
+    forward = way(np.cos) - y * np.sin(angle(along))
+    outward = way(np.sin) + y * np.cos(angle(along))
+    return np.stack([across * forward - up * beside, outward, up * forward + across * beside], axis=1)
+
+
+# A twenty-fifth larger than it was knitted: room for the yarns on the inside of the folds.
 swatch = lisle.knit_swatch("stockinette", courses=30, wales=22)
-x, y, z = swatch.points.astype(np.float64).T
-slope = 0.035 * np.cos(x * 70 + z * 12) * 70 * 0.2
-points = np.stack([x * 0.93, y + 0.007 * np.sin(x * 70 + z * 12), z], axis=1)
-normal = np.stack([-slope, np.ones_like(slope)], axis=1) / np.sqrt(1 + slope**2)[:, None]
-points[:, 0] += y * normal[:, 0]
-points = points.astype(np.float32)
+points = folds(1.04 * swatch.points.astype(np.float64)).astype(np.float32)
 
 scene = lisle.Scene(
     camera=look_at((0.045, -0.11, 0.045), (0.002, 0, 0.004), 22),
