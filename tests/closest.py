@@ -19,7 +19,7 @@ def _catmull_rom(points, closed):
 
 
 def closest_approach(curves, radius):
-    """The least distance of yarns, in radii: to each other, and to themselves where π radii of yarn or more lie between.
+    """The least distance of yarns, in radii: to each other, and to themselves where > π radii of yarn lie between.
 
     Infinite beyond 2.2 radii. `curves`: (points (n, 3), whether closed) of each.
     """

@@ -109,8 +109,12 @@ impl Knit {
     /// are narrowest; the middle is wider by the cloth's inner half thickness.
     #[must_use]
     pub fn tube_radius_m(&self) -> f64 {
-        let inner = self.cell.points.iter().map(|point| -point.z).fold(0.0, f64::max);
-        (self.extent.x / TAU + inner) * self.yarn_radius_m
+        self.extent.x / TAU * self.yarn_radius_m + self.inner_height_m()
+    }
+
+    /// How far the innermost centre lines lie behind the surface, in metres.
+    pub(crate) fn inner_height_m(&self) -> f64 {
+        self.cell.points.iter().map(|point| -point.z).fold(0.0, f64::max) * self.yarn_radius_m
     }
 
     /// Wale spacing, course spacing and thickness of the centre lines, in yarn radii; the thickness of the cloth is
