@@ -87,6 +87,7 @@ class Painter:
         self._paused = False
         self._stopping = False
         self._last = None
+        self._round, self._round_end = set(), 0.0
 
     def show(self, name, task):
         """From now on the view `name` shows that; the same key as before changes nothing."""
@@ -107,18 +108,27 @@ class Painter:
     def picture(self, name, wait_s=0.0):
         """The best Picture of what the view shows now, or None; raises what drawing it raised.
 
-        Waits up to `wait_s` for one, unless it pauses.
+        Waits up to `wait_s` for one, unless it pauses. Views that are asked for one after the other, as in one redraw
+        of several, wait no longer than that together.
         """
         with self._condition:
             view = self._views.get(name)
             if view is None:
                 return None
             if not self._paused:
-                self._condition.wait_for(view.has_something, wait_s)
+                self._condition.wait_for(view.has_something, self._patience(name, wait_s))
             view.seen = view.error or view.picture
             if view.error is not None:
                 raise view.error
             return view.picture if view.has_something() else None
+
+    def _patience(self, name, wait_s):
+        """Seconds left to wait for a view: those whose turn comes before it is asked for again share them."""
+        now = time.monotonic()
+        if name in self._round or now > self._round_end + wait_s:
+            self._round, self._round_end = set(), now + wait_s
+        self._round.add(name)
+        return max(self._round_end - now, 0.0)
 
     def news(self):
         """Names of the views that have more to show than `picture` last returned."""

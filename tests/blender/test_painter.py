@@ -126,6 +126,25 @@ def test_a_new_view_does_not_wait_for_the_refinement_of_others(painter):
     assert painter.picture("a", 10).key == "a2"
 
 
+def test_views_of_one_redraw_wait_together_no_longer_than_one(painter):
+    scene = Scene()
+    scene.gate.clear()
+    for name in "abcd":
+        painter.show(name, scene.task(name))
+
+    def redraw(names):
+        start = time.monotonic()
+        for name in names:
+            assert painter.picture(name, 0.2) is None
+        return time.monotonic() - start
+
+    for _ in range(2):
+        assert 0.2 <= redraw("abcd") < 0.35
+    assert redraw("aa") >= 0.4, "each redraw of one view has all its time"
+    time.sleep(0.5)
+    assert redraw("b") >= 0.2
+
+
 def test_views_improve_side_by_side(painter):
     scene = Scene()
     for name in "ab":

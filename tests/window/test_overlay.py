@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from looking import IMPOSSIBLE, at, screen, settled, srgb, world
 
+ENGINES = {"EEVEE": "BLENDER_EEVEE", "CYCLES": "CYCLES"}
+
 PICTURE = """
 np.save({path!r}, next(iter(painter()._views.values())).picture.combined)
 """
@@ -38,11 +40,14 @@ def over(view):
 
 
 @pytest.mark.parametrize("perspective", ["PERSP", "ORTHO"])
-@pytest.mark.parametrize("shading", ["SOLID", "CYCLES"])
+@pytest.mark.parametrize("shading", ["SOLID", "MATERIAL", "EEVEE", "CYCLES"])
 def test_yarn_and_scene_hide_each_other(over, shading, perspective):
-    if shading == "CYCLES":
+    if shading == "MATERIAL":
+        over.do(f"scene.render.engine = {ENGINES['EEVEE']!r}; space().shading.type = 'MATERIAL'")
+    elif shading != "SOLID":
         world(over, (0.02, 0.02, 0.02))
-        over.do("scene.render.engine = 'CYCLES'; scene.cycles.preview_samples = 1; space().shading.type = 'RENDERED'")
+        over.do(f"scene.render.engine = {ENGINES[shading]!r}; space().shading.type = 'RENDERED'")
+        over.do("scene.cycles.preview_samples = scene.eevee.taa_samples = 1")
         time.sleep(1)
     over.do("material = bpy.data.materials.new('Orange'); material.lisle.fiber.preset = 'cotton-2'")
     over.do("bpy.data.objects['Yarn'].data.materials.append(material)")

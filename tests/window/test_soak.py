@@ -223,23 +223,32 @@ def test_random_acts(view):
     assert "Traceback" not in log and "panicked" not in log, log
 
 
+WIDER = """
+area = areas()[0]
+operator(bpy.ops.screen.area_move, x=area.x + area.width, y=area.y + area.height // 2, delta={width} - area.width)
+operator(bpy.ops.screen.area_move, x=area.x + area.width // 2, y=area.y, delta=area.height - {height})
+answer = [region().width, region().height]
+"""
+
+
 def test_two_hundred_sizes_keep_memory_flat(view):
-    """The border changes the size of everything that is kept for a view."""
+    """As when its edges are dragged: everything that is kept for a view changes its size."""
+    before = view.do("answer = [areas()[0].width, areas()[0].height]")
     view.do(TRACE)
-    memory = []
+    traced, held, sizes = [], [], set()
     for number in range(200):
-        view.do(
-            "view = space(); view.use_render_border = True\n"
-            f"view.render_border_max_x = {0.3 + 0.7 * ((number * 37) % 100) / 100}\n"
-            f"view.render_border_max_y = {0.3 + 0.7 * ((number * 61) % 100) / 100}\n"
-            "areas()[0].tag_redraw()"
-        )
+        size = 350 + 3 * ((number * 37) % 100), 250 + 2 * ((number * 61) % 100)
+        sizes.add(tuple(view.do(WIDER.format(width=size[0], height=size[1]))))
         time.sleep(0.03)
-        if number % 10 == 0:
+        if number % 10 == 9:
             settled(view)
-            memory.append(view.do(TRACED))
+            traced.append(view.do(TRACED))
+            held.append(view.do(RESIDENT))
     view.do("tracemalloc.stop()")
-    print("MiB:", np.round(memory, 1))
+    view.do(WIDER.format(width=before[0], height=before[1]))
+    print("MiB traced:", np.round(traced, 1), "held:", np.round(held))
+    assert len(sizes) > 90, sizes
     # The same sizes come again after a hundred.
-    traced = np.array(memory)
-    assert np.abs(traced[11:] - traced[1:10]).max() < 2
+    traced, held = np.array(traced), np.array(held)
+    assert np.abs(traced[10:] - traced[:10])[1:].max() < 2
+    assert np.median(held[10:]) < 1.05 * np.median(held[:10])

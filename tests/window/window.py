@@ -63,7 +63,17 @@ class Window:
         self._opened += 1
         environment = self._program.environment | {"DISPLAY": self.display.name}
         size = map(str, self.display.size)
-        command = [self._program.path, "--gpu-backend", self.backend, "-p", "0", "0", *size, self._blend]
+        command = [
+            self._program.path,
+            "--enable-event-simulate",
+            "--gpu-backend",
+            self.backend,
+            "-p",
+            "0",
+            "0",
+            *size,
+            self._blend,
+        ]
         command += ["--python", HERE / "driver.py", "--", self._folder]
         self.log = self._folder / "log.txt"
         with self.log.open("w") as log:
