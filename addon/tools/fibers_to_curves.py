@@ -2,17 +2,19 @@
 """Object › Fibers to Curves: what Lisle draws, as curves that any engine renders."""
 
 import bpy
-import numpy as np
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 from mathutils import Matrix
 
 from .. import native
-from ..core.errors import LisleError, SceneError
+from ..core.errors import Cancelled, LisleError, SceneError
 from ..engine.assembly import by_material
 from ..engine.rest import RestShapes
 from ..export.camera import native_camera
 from ..export.scene import collect
+from .fiber_work import FiberWork
 from .yarn_objects import curves_data, in_object_mode
+
+_POLL_S = 0.05
 
 
 class LISLE_OT_fibers_to_curves(bpy.types.Operator):
@@ -59,24 +61,71 @@ class LISLE_OT_fibers_to_curves(bpy.types.Operator):
         row.prop(self, "detail")
         layout.prop(self, "most_points")
 
-    def execute(self, context):
+    def invoke(self, context, _event):
+        """As from a menu: the interface goes on while fibers are made, Escape stops that."""
+        if bpy.app.background:
+            return self.execute(context)
         try:
-            lisle = native.module()
-            try:
-                made = self._make(lisle, context)
-            except lisle.Error as error:
-                raise LisleError(str(error)) from error
+            self._work = self._prepare(context)
         except LisleError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
+        self._timer = manager.event_timer_add(_POLL_S, window=context.window)
+        manager.modal_handler_add(self)
+        context.workspace.status_text_set("Making fibers. Esc: Cancel")
+        self._work.start()
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self._work.stop()
+            return {"RUNNING_MODAL"}
+        context.window_manager.progress_update(round(100 * self._work.share))
+        if self._work.is_alive():
+            return {"PASS_THROUGH"}
+        self._leave(context)
+        return self._finish(context, self._work)
+
+    def cancel(self, context):
+        """Blender is about to quit, or to open another file."""
+        self._work.stop()
+        self._leave(context)
+
+    def _leave(self, context):
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        context.workspace.status_text_set(None)
+
+    def execute(self, context):
+        try:
+            work = self._prepare(context)
+        except LisleError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        work.run()
+        return self._finish(context, work)
+
+    def _finish(self, context, work):
+        try:
+            made = work.result()
+        except Cancelled:
+            return {"CANCELLED"}
+        except LisleError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        collection = bpy.data.collections.new("Fibers")
+        context.scene.collection.children.link(collection)
         for obj in context.selected_objects:
             obj.select_set(False)
-        for obj in made:
-            obj.select_set(True)
+        for each in made:
+            _add(collection, *each).select_set(True)
         return {"FINISHED"}
 
-    def _make(self, lisle, context):
-        scene = context.scene
+    def _prepare(self, context):
+        """The FiberWork of the selected yarns."""
+        lisle, scene = native.module(), context.scene
         depsgraph = context.evaluated_depsgraph_get()
         names = {obj.name_full for obj in context.selected_objects}
         content = collect(lisle, depsgraph, lambda _: None, only=names)
@@ -89,26 +138,21 @@ class LISLE_OT_fibers_to_curves(bpy.types.Operator):
             camera = native_camera(lisle, scene.camera, depsgraph, size)
         rest_shapes = RestShapes()
         at_rest = rest_shapes.find(lisle, _Clock(scene), depsgraph, content)
-        prepared, points = [], 0
-        for placement in content.placements:
-            geometry = content.geometries[placement.key]
-            for yarns, (yarn, fiber), _ in by_material(
-                lisle, geometry, at_rest[geometry.key], rest_shapes, lambda text: self.report({"INFO"}, text)
-            ):
-                found = lisle.fibers(
-                    yarns,
-                    yarn,
-                    object_id=placement.identity,
-                    camera=None if camera is None else _seen_from(lisle, camera, placement.world_from_object),
-                    lod_pixels=self.detail,
+        try:
+            pieces = [
+                (placement, *piece[:2])
+                for placement in content.placements
+                for piece in by_material(
+                    lisle,
+                    content.geometries[placement.key],
+                    at_rest[placement.key],
+                    rest_shapes,
+                    lambda text: self.report({"INFO"}, text),
                 )
-                points += len(found.points)
-                if points > 1_000_000 * self.most_points:
-                    raise SceneError(f"More than {self.most_points} million points: raise Most Points, or use a camera")
-                prepared.append((placement, found, fiber))
-        collection = bpy.data.collections.new("Fibers")
-        scene.collection.children.link(collection)
-        return [_add(collection, *each) for each in prepared]
+            ]
+        except lisle.Error as error:
+            raise LisleError(str(error)) from error
+        return FiberWork(lisle, pieces, camera, self.detail, self.most_points)
 
 
 class _Clock:
@@ -119,12 +163,6 @@ class _Clock:
 
     def frame_set(self, frame, subframe):
         self._scene.frame_set(frame, subframe=subframe)
-
-
-def _seen_from(lisle, camera, world_from_object):
-    """The camera in an object's space, where its fibers are made."""
-    world_from_camera = np.linalg.solve(world_from_object, camera.world_from_camera)
-    return lisle.Camera.from_matrices(world_from_camera, camera.clip_from_camera, camera.size)
 
 
 def _add(collection, placement, fibers, fiber):
