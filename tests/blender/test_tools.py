@@ -92,14 +92,65 @@ def test_objects_are_added_in_object_mode_alone(lisle, tmp_path):
     assert len(bpy.data.hair_curves) == before
 
 
-def test_adding_can_be_undone(lisle):
+OPERATORS = {
+    "add_knit_swatch": {"courses": 2, "wales": 2},
+    "add_knit_tube": {"courses": 2, "wales": 8},
+    "add_woven_swatch": {"warp": 3, "weft": 3},
+    "import_bcc": {"filepath": "a.bcc"},
+    "knit_from_mesh": {"yarn_radius": 0.1},
+    "store_length_coordinate": {},
+    "fibers_to_curves": {},
+    "toggle_overlay": {},
+}
+"""By name: arguments."""
+
+
+def state():
+    """What operators change, by name."""
     import bpy
 
+    return (
+        sorted((obj.name, obj.hide_render, obj.select_get()) for obj in bpy.context.scene.objects),
+        sorted((data.name, len(data.points), sorted(data.attributes.keys())) for data in bpy.data.hair_curves),
+        sorted(bpy.data.materials.keys()),
+        sorted(bpy.data.collections.keys()),
+        bpy.context.scene.lisle.show_overlay,
+    )
+
+
+@pytest.mark.parametrize("name", OPERATORS)
+def test_everything_can_be_undone_and_done_again(lisle, tmp_path, name):
+    """From a script, in the background: what its redo panel does."""
+    import bpy
+
+    (tmp_path / "a.bcc").write_bytes(bcc((np.linspace((0, 0, 0), (5, 0, 0), 6), False)))
+    scenes.curves("Yarn", scenes.line()).select_set(True)
+    if name == "knit_from_mesh":
+        bpy.ops.mesh.primitive_grid_add()
     bpy.ops.ed.undo_push(message="before")
-    bpy.ops.lisle.add_knit_swatch("EXEC_DEFAULT", True, courses=2, wales=2)
-    assert "Knit Swatch" in bpy.data.objects
+    before = state()
+    arguments = OPERATORS[name] | ({"filepath": str(tmp_path / "a.bcc")} if name == "import_bcc" else {})
+    operator = getattr(bpy.ops.lisle, name)
+    assert operator("EXEC_DEFAULT", True, **arguments) == {"FINISHED"}
+    after = state()
+    assert after != before
     bpy.ops.ed.undo()
-    assert "Knit Swatch" not in bpy.data.objects
+    assert state() == before
+    bpy.ops.ed.redo()
+    assert state() == after
+
+
+def test_every_operator_is_known_here_and_has_a_redo_panel(addon):
+    import bpy
+
+    found = {name for name in dir(bpy.ops.lisle) if not name.endswith("_preset_add")}
+    assert found == set(OPERATORS)
+    for name in found:
+        operator = getattr(bpy.types, f"LISLE_OT_{name}")
+        assert {"REGISTER", "UNDO"} <= operator.bl_options, name
+        assert operator.__doc__ and all(
+            each.description for each in operator.bl_rna.properties if each.identifier in operator.__annotations__
+        ), name
 
 
 def test_a_knitted_piece_renders(lisle, tmp_path):
