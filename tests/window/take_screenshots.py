@@ -31,6 +31,8 @@ camera.location, camera.rotation_euler = (0, -0.25, 0.03), (1.45, 0, 0)
 scene.collection.objects.link(camera)
 scene.camera = camera
 properties = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'PROPERTIES')
+# A wider column of panels, so that their labels can be read.
+operator(bpy.ops.screen.area_move, x=areas()[0].x + areas()[0].width, y=areas()[0].y + 200, delta=-130)
 view = space()
 view.clip_start = 0.001
 view.overlay.show_floor = view.overlay.show_axis_x = view.overlay.show_axis_y = view.overlay.show_cursor = False
