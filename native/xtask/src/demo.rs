@@ -21,7 +21,7 @@ pub fn run() -> Result<(), Failure> {
 
     let blender = Blender::found()?;
     let content = digest(&wheel)?;
-    let archive = extension::build(&wheel, || blender.extension_tool())?;
+    let archive = extension::build(std::slice::from_ref(&wheel), || blender.extension_tool())?.remove(0);
     let host = blender.host(target().join("demo/blender"));
     host.install(&archive, &format!("{content} {}", digest(&archive)?))?;
 

@@ -8,30 +8,40 @@ use crate::shell::{folder, output, root, say, target};
 
 const ID: &str = "lisle_blender";
 
-/// Builds the archive with Blender's tool for extensions and returns its path.
-pub fn build(wheel: &Path, tool: impl Fn() -> Result<Command, Failure>) -> Result<PathBuf, Failure> {
+/// Builds an archive for the platform of each wheel with Blender's tool for extensions, and returns their paths.
+pub fn build(wheels: &[PathBuf], tool: impl Fn() -> Result<Command, Failure>) -> Result<Vec<PathBuf>, Failure> {
     say("Packing the extension");
-    let name = wheel.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let platform = platform(&name)?;
     let source = target().join("extension/source");
     if source.is_dir() {
         std::fs::remove_dir_all(&source).map_err(|error| failed(&source, error))?;
     }
     copy(&root().join("addon"), &source)?;
     folder(&source.join("wheels"))?;
-    std::fs::copy(wheel, source.join("wheels").join(&name)).map_err(|error| failed(wheel, error))?;
+    let mut names = Vec::new();
+    for wheel in wheels {
+        let name = wheel.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        std::fs::copy(wheel, source.join("wheels").join(&name)).map_err(|error| failed(wheel, error))?;
+        names.push(name);
+    }
+    let platforms = names.iter().map(|name| platform(name)).collect::<Result<Vec<_>, _>>()?;
     let manifest = source.join("blender_manifest.toml");
     let text = std::fs::read_to_string(&manifest).map_err(|error| failed(&manifest, error))?;
-    std::fs::write(&manifest, packaged(&text, &name, platform)?).map_err(|error| failed(&manifest, error))?;
+    std::fs::write(&manifest, packaged(&text, &names, &platforms)?).map_err(|error| failed(&manifest, error))?;
 
-    let archive = target().join("extension").join(format!("{ID}-{}-{platform}.zip", env!("CARGO_PKG_VERSION")));
+    let name = format!("{ID}-{}", env!("CARGO_PKG_VERSION"));
+    let folder = target().join("extension");
     let mut build = tool()?;
-    build.args(["build", "--source-dir"]).arg(&source).arg("--output-filepath").arg(&archive);
+    build.args(["build", "--split-platforms", "--source-dir"]).arg(&source);
+    build.arg("--output-filepath").arg(folder.join(format!("{name}.zip")));
     output("building the extension", &mut build)?;
-    let mut validate = tool()?;
-    let said = output("validating the extension", validate.arg("validate").arg(&archive))?;
-    println!("{}", said.trim());
-    Ok(archive)
+    let mut archives = Vec::new();
+    for platform in platforms {
+        let archive = folder.join(format!("{name}-{}.zip", platform.replace('-', "_")));
+        let said = output("validating the extension", tool()?.arg("validate").arg(&archive))?;
+        println!("{}", said.trim());
+        archives.push(archive);
+    }
+    Ok(archives)
 }
 
 /// Blender's name of the platform that a wheel is for.
@@ -52,11 +62,12 @@ fn platform(wheel: &str) -> Result<&'static str, Failure> {
         .ok_or_else(|| Failure::new("packing the extension", format!("no Blender runs on the platform of {wheel}")))
 }
 
-/// The manifest with the wheel, its platform and the workspace's version.
-fn packaged(manifest: &str, wheel: &str, platform: &str) -> Result<String, Failure> {
+/// The manifest with the wheels, their platforms and the workspace's version.
+fn packaged(manifest: &str, wheels: &[String], platforms: &[&str]) -> Result<String, Failure> {
+    let wheels: Vec<String> = wheels.iter().map(|wheel| format!("./wheels/{wheel}")).collect();
     let mut replacements = [
-        ("wheels = ", format!("wheels = [\"./wheels/{wheel}\"]"), false),
-        ("platforms = ", format!("platforms = [\"{platform}\"]"), false),
+        ("wheels = ", format!("wheels = {wheels:?}"), false),
+        ("platforms = ", format!("platforms = {platforms:?}"), false),
         ("version = ", format!("version = \"{}\"", env!("CARGO_PKG_VERSION")), false),
     ];
     let mut lines = Vec::new();
@@ -116,12 +127,13 @@ mod tests {
     }
 
     #[test]
-    fn the_manifest_names_the_wheel_and_one_without_a_place_for_it_is_refused() {
+    fn the_manifest_names_the_wheels_and_one_without_a_place_for_it_is_refused() {
         let manifest = "# note\nid = \"x\"\nversion = \"9\"\nplatforms = []\nwheels = []\n";
-        let packaged = |text| super::packaged(text, "a.whl", "linux-x64");
+        let wheels = ["a.whl".to_owned(), "b.whl".to_owned()];
+        let packaged = |text| super::packaged(text, &wheels, &["linux-x64", "windows-x64"]);
         let version = env!("CARGO_PKG_VERSION");
         let expected = format!(
-            "id = \"x\"\nversion = \"{version}\"\nplatforms = [\"linux-x64\"]\nwheels = [\"./wheels/a.whl\"]\n"
+            "id = \"x\"\nversion = \"{version}\"\nplatforms = [\"linux-x64\", \"windows-x64\"]\nwheels = [\"./wheels/a.whl\", \"./wheels/b.whl\"]\n"
         );
         assert_eq!(packaged(manifest).expect("complete"), expected);
         assert!(packaged("id = \"x\"\nversion = \"9\"\nplatforms = []\n").is_err());

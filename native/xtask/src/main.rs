@@ -28,7 +28,8 @@ cargo xtask COMMAND
   bench    the benchmark; further arguments go to it
   fidelity the renderer beside the path tracer: out/fidelity/; further arguments go to it
   thumbnails  the pictures of presets in addon/presets/thumbnails/; names of presets limit it to those
-  package  build the Blender extension with its wheel: target/extension/
+  package  build the Blender extension with its wheel: target/extension/; wheels that other systems built, if
+           any are named, get an archive each
 ";
 
 fn main() -> ExitCode {
@@ -41,7 +42,7 @@ fn main() -> ExitCode {
         (Some("bench"), rest) => bench::run(rest),
         (Some("fidelity"), rest) => fidelity::run(rest),
         (Some("thumbnails"), rest) => thumbnails::draw(rest),
-        (Some("package"), []) => package(),
+        (Some("package"), wheels) => package(wheels),
         (Some("help" | "--help" | "-h"), _) => {
             print!("{USAGE}");
             Ok(())
@@ -60,11 +61,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// The extension for other machines: its wheel runs on any Linux that Blender runs on.
-fn package() -> Result<(), Failure> {
+/// The extension for other machines: the wheel made here runs on any with this operating system that Blender runs on.
+fn package(others: &[String]) -> Result<(), Failure> {
     let blender = blender::Blender::found()?;
-    let wheel = wheel::portable()?;
-    let archive = extension::build(&wheel, || blender.extension_tool())?;
-    println!("{}", archive.display());
+    let mut wheels = vec![wheel::portable()?];
+    wheels.extend(others.iter().map(std::path::PathBuf::from));
+    for archive in extension::build(&wheels, || blender.extension_tool())? {
+        println!("{}", archive.display());
+    }
     Ok(())
 }

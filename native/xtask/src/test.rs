@@ -117,7 +117,7 @@ pub fn run() -> Result<(), Failure> {
     let mut archive = None;
     if let Some(module) = modules.first() {
         report.step("the extension, and blender_ext.py validate", || {
-            archive = Some(extension::build(&wheel, || module.extension_tool())?);
+            archive = extension::build(std::slice::from_ref(&wheel), || module.extension_tool())?.pop();
             Ok(Vec::new())
         });
     }
