@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From what was read out of Blender to the native scene. Touches nothing of Blender's: any thread may call it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..core.pixels import free_id
+from ..core.trim import cut
+from ..native import native_yarns
 
 
 def add_objects(lisle, scene, content, at_rest, rest_shapes, note):
@@ -53,6 +57,13 @@ def by_material(lisle, geometry, at_rest, rest_shapes, note):
             return []
         is_rest, curves = curves is at_rest, curves.select(there)
         at_rest = curves if is_rest else at_rest.select(there)
+    if geometry.parts is not None:
+        is_rest, parts = curves is at_rest, geometry.parts[there]
+        at_rest, skipped = cut(at_rest, parts)
+        if not len(skipped):
+            return []
+        at_rest = _with_lengths_after(lisle, at_rest, skipped, geometry.object_name)
+        curves = at_rest if is_rest else cut(curves, parts)[0]
     if curves.material_index is None or len(materials) == 1:
         return [(rest_shapes.yarns(lisle, geometry.key, curves, at_rest), materials[0], labels[0])]
     # Blender draws an index beyond the last slot with the last one.
@@ -66,3 +77,11 @@ def by_material(lisle, geometry, at_rest, rest_shapes, note):
         for slot in np.unique(slots)
         for part, rest in [(curves.select(slots == slot), at_rest.select(slots == slot))]
     ]
+
+
+def _with_lengths_after(lisle, curves, skipped, name):
+    """Curves of which something was cut off at the beginning, with the length coordinates that they had."""
+    if not skipped.any():
+        return curves
+    own = native_yarns(lisle, curves, name).length_coordinates
+    return replace(curves, length_coordinates=own + np.repeat(skipped, np.diff(curves.offsets.astype(np.int64))))

@@ -10,6 +10,7 @@ from mathutils import Matrix
 
 from ..core import display
 from ..core.curves import polylines
+from ..core.trim import cut
 
 _LINE_POINTS = 100_000
 """Most points of an object's lines."""
@@ -77,7 +78,7 @@ class Screen:
         above."""
         if snapshot is not self._lines_of:
             self._lines = [
-                (_line_batch(*polylines(part.curves, _LINE_POINTS)), np.array(part.materials[0][1].diffuse))
+                (_line_batch(*polylines(_shown(part), _LINE_POINTS)), np.array(part.materials[0][1].diffuse))
                 for part in snapshot.content.geometries.values()
             ]
             self._lines_of = snapshot
@@ -118,6 +119,10 @@ def texture(kind, values):
 def clip_rectangle(region, size):
     """(x0, y0, x1, y1) in clip space of a rectangle in pixels."""
     return tuple(2 * edge / length - 1 for edge, length in zip(region, (*size, *size), strict=True))
+
+
+def _shown(geometry):
+    return geometry.curves if geometry.parts is None else cut(geometry.curves, geometry.parts)[0]
 
 
 def _line_batch(points, pairs):

@@ -15,6 +15,7 @@ from ..core.curves import (
     polylines_of_wire,
 )
 from ..core.errors import GeometryError
+from ..core.trim import places
 from .curves import DEFAULT_RADIUS_M, read_curves
 
 _KNOTS_ENDPOINT, _KNOTS_BEZIER = 1, 2
@@ -31,10 +32,11 @@ def read_legacy(obj, geometry, depsgraph):
             return None
         arrays = _with_spline_materials(arrays, obj.data)
         return replace(arrays, radii=_radii_in_metres(arrays.radii, obj))
-    if geometry.mesh is None or len(geometry.mesh.vertices) == 0:
-        return None
-    if len(geometry.mesh.polygons) == 0:
-        return _read_wire(geometry.mesh, obj)
+    if not is_shortened(obj.data):
+        if geometry.mesh is None or len(geometry.mesh.vertices) == 0:
+            return None
+        if len(geometry.mesh.polygons) == 0:
+            return _read_wire(geometry.mesh, obj)
     _refuse_modifiers_of_the_tube(obj)
     # Modifiers that apply to splines, shape keys and hooks are in this copy, bevel or not.
     curve = obj.to_curve(depsgraph, apply_modifiers=True)
@@ -47,11 +49,32 @@ def read_legacy(obj, geometry, depsgraph):
     return replace(arrays, radii=arrays.radii * np.float32(_metres_per_radius(obj)))
 
 
+def shown_parts(obj, arrays):
+    """Which part of each curve is there, (c, 2) places as in core.trim; None if all are whole. As Blender has it, a
+    bevel has a start and an end, a line without bevel has none."""
+    curve = obj.data
+    if arrays is None or not is_shortened(curve):
+        return None
+    ends = ((getattr(curve, f"bevel_factor_{end}"), getattr(curve, f"bevel_factor_mapping_{end}")) for end in _ENDS)
+    return places(arrays, *ends)
+
+
 def left_out(obj):
     """What of a legacy curve is left out, in words; None if nothing is."""
-    if obj.type == "CURVE" and (obj.data.bevel_factor_start, obj.data.bevel_factor_end) != (0.0, 1.0):
-        return "its bevel's start and end are ignored, yarn runs along the whole curve"
+    if obj.type != "CURVE" or not is_shortened(obj.data):
+        return None
+    if any(spline.type == "NURBS" and not spline.use_cyclic_u for spline in obj.data.splines):
+        return "its bevel's start and end do not shorten NURBS: convert them to Bézier splines"
     return None
+
+
+_ENDS = ("start", "end")
+
+
+def is_shortened(curve):
+    """Whether only a part of a legacy curve has a bevel, perhaps none."""
+    is_bevelled = max(curve.bevel_depth, curve.extrude) > 0 or curve.bevel_mode == "OBJECT"
+    return is_bevelled and sorted((curve.bevel_factor_start, curve.bevel_factor_end)) != [0.0, 1.0]
 
 
 def _refuse_modifiers_of_the_tube(obj):

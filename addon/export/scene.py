@@ -16,7 +16,7 @@ from . import follow
 from .curves import read_curves
 from .guides import Guides
 from .instances import instancer_of
-from .legacy import left_out, read_legacy
+from .legacy import is_shortened, left_out, read_legacy, shown_parts
 from .lights import native_light
 from .materials import geometry_materials, yarn_and_material
 from .meshes import TYPES as MESH_TYPES
@@ -37,10 +37,16 @@ class Geometry:
     """(name, Blender's index) of the materials, likewise."""
     reference_frame: int
     remeasure: bool
+    parts: np.ndarray | None = None
+    """(c, 2) float64: which part of each curve is there, as in core.trim; None if all are whole."""
 
     def equals(self, other):
         """Whether both look the same."""
-        return self.materials == other.materials and self.curves.equals(other.curves)
+        return (
+            self.materials == other.materials
+            and self.curves.equals(other.curves)
+            and np.array_equal(self.parts, other.parts)
+        )
 
 
 @dataclass(frozen=True)
@@ -159,7 +165,7 @@ def _is_component(obj, geometry):
     """Whether an instance is a bare component of some geometry set: those carry neither curves nor instances."""
     if geometry.curves is not None or geometry.instances_pointcloud() is not None:
         return False
-    return obj.type != "CURVE" or geometry.mesh is None
+    return obj.type != "CURVE" or (geometry.mesh is None and not is_shortened(obj.data))
 
 
 def _read_parts(lisle, obj, geometry, depsgraph):
@@ -174,19 +180,20 @@ def _read_parts(lisle, obj, geometry, depsgraph):
 
     parts = []
 
-    def add(path, arrays, materials, transforms):
+    def add(path, arrays, materials, transforms, shown=None):
         if arrays is None:
             return
         if settings.yarn_radius > 0 and obj.type != "CURVE":
             arrays = _with_radius(arrays, settings.yarn_radius)
         native = [yarn_and_material(lisle, material, obj.name) for material in materials or [None]]
         labels = [(material.name, material.pass_index) if material else ("", 0) for material in materials or [None]]
-        geometry = Geometry((name, *path), obj.name, arrays, native, labels, reference_frame, settings.remeasure)
+        geometry = Geometry((name, *path), obj.name, arrays, native, labels, reference_frame, settings.remeasure, shown)
         parts.append((geometry, transforms))
 
     own = np.eye(4)[np.newaxis]
     if obj.type == "CURVE":
-        add((), read_legacy(obj, geometry, depsgraph), geometry_materials(obj, geometry.curves or obj.data), own)
+        arrays = read_legacy(obj, geometry, depsgraph)
+        add((), arrays, geometry_materials(obj, geometry.curves or obj.data), own, shown_parts(obj, arrays))
     elif geometry.curves is not None:
         add((), read_curves(geometry.curves, obj.name), geometry_materials(obj, geometry.curves), own)
     for path, curves, transforms in _instanced_curves(geometry, (), own):

@@ -135,14 +135,3 @@ def test_a_bevelled_curve_that_is_no_yarn_is_a_mesh(lisle):
     assert len(collected(lisle)[0].meshes) == 1
     obj.data.bevel_depth, obj.lisle.mesh_kind = 0, "SHADED"
     assert len(collected(lisle)[0].meshes) == 1, "a bare line is nothing"
-
-
-def test_a_bevel_that_starts_late_is_noted(lisle):
-    obj = rail(bevel_depth=0.1)
-    assert not collected(lisle)[1]
-    obj.data.bevel_factor_start = 0.25
-    assert "object 'Rail': its bevel's start and end" in collected(lisle)[1][0]
-    obj.data.bevel_factor_start, obj.data.bevel_factor_end = 0, 0.5
-    assert len(collected(lisle)[1]) == 1
-    obj.lisle.is_yarn = "NEVER"
-    assert not collected(lisle)[1], "the mesh has both"
