@@ -166,6 +166,27 @@ def test_every_number_of_a_yarn_and_fiber_has_a_place_in_a_panel(addon):
 
 
 @blender
+def test_every_setting_is_explained_and_lengths_and_angles_have_units(addon):
+    import bpy
+
+    groups = [cls for cls in vars(addon.properties).values() if isinstance(cls, type)]
+    groups = [cls for cls in groups if issubclass(cls, bpy.types.PropertyGroup)]
+    assert len(groups) >= 6
+    for group in groups:
+        for prop in group.bl_rna.properties:
+            if prop.identifier in group.__annotations__ and prop.type != "POINTER":
+                assert prop.description and prop.description != prop.name, (group, prop.identifier)
+    units = {
+        (addon.properties.LisleObjectSettings, "yarn_radius"): "LENGTH",
+        (addon.properties.LisleYarn, "hair_theta_span"): "ROTATION",
+        (addon.properties.LisleFiber, "beta_r"): "ROTATION",
+        (addon.properties.LisleSceneSettings, "time_limit"): "TIME_ABSOLUTE",
+    }
+    for (group, name), unit in units.items():
+        assert group.bl_rna.properties[name].unit == unit, name
+
+
+@blender
 def test_blenders_own_panels_apply(addon):
     import bpy
 

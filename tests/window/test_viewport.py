@@ -259,6 +259,29 @@ def test_a_first_picture_comes_soon_and_an_idle_view_costs_nothing(view):
     assert view.do("answer = time.process_time()") - begin < 0.3
 
 
+PROFILE = """
+import threading
+ran = set()
+def note(frame, event, argument):
+    code = frame.f_code
+    if event == 'call' and PACKAGE.rpartition('.')[2] in code.co_filename:
+        ran.add(code)
+threading.setprofile(note)
+painter().stop()  # its next thread is watched
+"""
+
+
+def test_the_thread_that_draws_knows_nothing_of_blender(view):
+    view.do(PROFILE)
+    view.do("bpy.ops.mesh.primitive_cube_add(location=(0, 0, -3)); look((0.4, 0, 0))")
+    settled(view)
+    view.do("threading.setprofile(None)")
+    functions = view.do("answer = [[code.co_filename, code.co_name, list(code.co_names)] for code in ran]")
+    assert {"_step", "draw", "add_objects"} <= {name for _, name, _ in functions}
+    assert not [function for function in functions if "bpy" in function[2]]
+    view.do("painter().stop(); areas()[0].tag_redraw()")
+
+
 def test_switching_engines_files_and_shading_leaves_no_view_behind(view):
     settled(view)
     for engine in ("BLENDER_WORKBENCH", "LISLE", "CYCLES", "LISLE"):
