@@ -1,7 +1,7 @@
 """What panels show that there is only with a window."""
 
 import pytest
-from looking import screen, world
+from looking import screen, settled, world
 
 PICTURES = """
 import importlib
@@ -58,8 +58,9 @@ POPUPS = {
 @pytest.mark.parametrize("name", POPUPS)
 def test_what_pops_up_draws(view, name):
     view.do(SELECT)
-    view.do("bpy.context.window_manager.windows[0].cursor_warp(330, 560); space().show_region_header = True")
-    before = screen(view)
+    view.do("window = bpy.context.window_manager.windows[0]")
+    view.do("window.event_simulate(type='MOUSEMOVE', value='NOTHING', x=330, y=300)")
+    before = settled(view)
     view.do(POPUPS[name])
     pixels = screen(view, keep=f"popup-{name}")
     assert (pixels != before).any(axis=2).mean() > 0.02, "nothing popped up"
