@@ -52,10 +52,10 @@ fn work_of(segment: u32) -> Work {
     let items = yarn.plies * max(1u, (count + CHUNK - 1u) / CHUNK);
 
     let s = segment_at(draw, segment);
-    let steps = f32(fiber_steps(yarn, s, 0u, scale.radius_pixels));
+    let lines = lines_about(yarn, segment_rates(yarn, s), scale.radius_pixels);
     let width = 2.0 * yarn.fiber_radius * scale.radius_pixels + 2.0;
     let chord = length(p2 - p1) * scale.radius_pixels / max(min(s.radius.x, s.end.w), 1e-30);
-    let length = min(1.5 * chord, 2.0 * f32(frame.size.x + frame.size.y)) + steps * width;
+    let length = min(1.5 * chord, 2.0 * f32(frame.size.x + frame.size.y)) + lines * width;
     var exponent = parts_exponent(f32(CHUNK) * length, width);
     while (items << exponent) > MOST_ITEMS && exponent > 0u {
         exponent--;

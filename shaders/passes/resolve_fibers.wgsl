@@ -15,22 +15,24 @@ fn within_fiber(offset: f32, radius_pixels: f32) -> f32 {
     return select(clamp(offset, -1.0, 1.0), folded, is_thin(radius_pixels));
 }
 
-// From a fiber's point to its chord at the same parameter.
-fn to_chord(f: FiberPoint, t: f32, steps: u32) -> vec3f {
-    let in_step = fract(t * f32(steps));
-    return f.acceleration * (0.5 * in_step * (1.0 - in_step) / f32(steps * steps));
+// From a fiber's point to its chord, from one parameter to another, at the same parameter.
+fn to_chord(f: FiberPoint, t: f32, line: vec2f) -> vec3f {
+    return f.acceleration * (0.5 * max(t - line.x, 0.0) * max(line.y - t, 0.0));
 }
 
 fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, pixel: vec2f) -> Surface {
     let t = f32(parts.place) / place_scale();
     let p = yarn_point(s, t);
     let q = ply_point(yarn, s, p, ply);
-    let f = fiber_point(yarn, s, p, q, fiber_at(yarn, ply_seed(s.seed, ply), rank));
+    let fiber = fiber_at(yarn, ply_seed(s.seed, ply), rank);
+    let f = fiber_point(yarn, s, p, q, fiber);
     let scale = scale_of(yarn, s);
     let width = width_factor(yarn, mix_detail(scale.ends, t), rank, f.flyaway, f.taper);
-    let steps = fiber_steps(yarn, s, rank / CHUNK * CHUNK, scale.radius_pixels);
     let radius_pixels = max(pixels_at(f.position, yarn.fiber_radius * p.radius * width), 1e-20);
-    let beside = select(vec3f(0.0), to_chord(f, t, steps), is_thin(radius_pixels));
+    var beside = vec3f(0.0);
+    if is_thin(radius_pixels) {
+        beside = to_chord(f, t, line_about(yarn, s, segment_rates(yarn, s), fiber, scale.radius_pixels, t));
+    }
     let at = to_pixel(frame.pixel_from_render, f.position + beside);
     // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.
     let moved = (frame.pixel_from_render * vec4f(f.velocity, 0.0)).xyz;

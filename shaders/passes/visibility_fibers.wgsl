@@ -26,12 +26,15 @@ struct Stroke {
     // Depth that the fiber's surface is before its centre line, per pixel of bulge, at both ends.
     bulge_a: f32,
     bulge_b: f32,
+    // Factor on it past an end: a ball bulges as far from every side, and lies within the tube; farther out it would hide the next line's.
+    past_end: f32,
 }
 
 fn stroke_key(line: Line, stroke: Stroke, hit: LineHit) -> Key {
     let share = line_share(line, hit.t);
     let behind = depth_beyond_chord(stroke.rate_a, stroke.rate_b, share);
-    let bulge = hit.bulge * mix(stroke.bulge_a, stroke.bulge_b, share);
+    let along = select(stroke.past_end, 1.0, hit.t > 0.0 && hit.t < 1.0);
+    let bulge = hit.bulge * along * mix(stroke.bulge_a, stroke.bulge_b, share);
     let place = u32(stroke.place + share * stroke.place_span);
     return make_key(stroke.owner, line_depth(line, share) + behind - bulge, place);
 }
@@ -112,7 +115,8 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let s = segment_at(draw, segment);
     let scale = scale_of(yarn, s);
     let last = min(first + CHUNK, most_fibers(yarn, scale));
-    let steps = fiber_steps(yarn, s, first, scale.radius_pixels);
+    let rates = segment_rates(yarn, s);
+    let steps = fiber_steps(yarn, rates, scale.radius_pixels);
     let seed = ply_seed(s.seed, ply);
     let first_slot = ply * (yarn.fibers + 1u) + 1u;
     let orthographic = frame.viewer.w > 0.5;
@@ -126,24 +130,42 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         loop {
             // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
             let fiber = fiber_at(yarn, seed, rank);
-            let a = fiber_end(yarn, s, start, fiber);
-            let b = fiber_end(yarn, s, end, fiber);
-            if rank < last && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
-                && joined(a.piece, a.period, b.piece, b.period) {
-                let line = make_line(a.line, b.line, orthographic);
-                let chord = b.line.depth - a.line.depth;
-                // Of its own width, the fiber is round: where it stands for several, it is flatter.
-                let thickness = line_lean(line, orthographic) / (max(a.width, 1.0) * frame.pixels_per_unit);
-                let stroke = Stroke(
-                    key_owner(segment, first_slot + rank),
-                    t0 * place_scale() + 0.5,
-                    (t1 - t0) * place_scale(),
-                    a.depth_rate / f32(steps) - chord,
-                    b.depth_rate / f32(steps) - chord,
-                    thickness * select(a.line.depth, 1.0, orthographic),
-                    thickness * select(b.line.depth, 1.0, orthographic),
-                );
-                draw_line(line, stroke, parts);
+            var a = fiber_end(yarn, s, start, fiber);
+            var begin = t0;
+            loop {
+                var to = t1;
+                var at = end;
+                if rank < yarn.flyaway_fibers {
+                    to = line_end(yarn, s, rates, fiber, scale.radius_pixels, begin, t1);
+                    if to < t1 {
+                        at = screen_ply(yarn, s, scale.ends, to, ply);
+                    }
+                }
+                let b = fiber_end(yarn, s, at, fiber);
+                if rank < last && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
+                    && joined(a.piece, a.period, b.piece, b.period) {
+                    let line = make_line(a.line, b.line, orthographic);
+                    let chord = b.line.depth - a.line.depth;
+                    // Of its own width, the fiber is round: where it stands for several, it is flatter.
+                    let lean = line_lean(line, orthographic);
+                    let thickness = lean / (max(a.width, 1.0) * frame.pixels_per_unit);
+                    let stroke = Stroke(
+                        key_owner(segment, first_slot + rank),
+                        begin * place_scale() + 0.5,
+                        (to - begin) * place_scale(),
+                        a.depth_rate * (to - begin) - chord,
+                        b.depth_rate * (to - begin) - chord,
+                        thickness * select(a.line.depth, 1.0, orthographic),
+                        thickness * select(b.line.depth, 1.0, orthographic),
+                        1.0 / lean,
+                    );
+                    draw_line(line, stroke, parts);
+                }
+                if to >= t1 {
+                    break;
+                }
+                a = b;
+                begin = to;
             }
             rank++;
             if rank >= last {

@@ -87,50 +87,83 @@ fn astray(radius: f32) -> f32 {
     return smoothstep(ASTRAY_BEGIN, ASTRAY_END, radius);
 }
 
-fn fiber_profile(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, phase: f32, hash: u32) -> Profile {
-    let unit = circle(phase);
-    let wave = 0.5 - 0.5 * unit.x;
-    let wave_rate = PI * unit.y;
-    let inner = fiber.radius * yarn.r_min;
-    var outer = fiber.radius;
-    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
+// What a fiber is in one migration period.
+const PERIOD_PLY: u32 = 0u;
+const PERIOD_LOOP: u32 = 1u;
+const PERIOD_HAIR: u32 = 2u;
+
+struct Period {
+    kind: u32,
+    // Largest radius, and how much of it a hair rises above the ply's fiber.
+    outer: f32,
+    rise: f32,
+    // Of a hair: 1 or -1, share of the period, and turns by which it departs from the regular twist.
+    direction: f32,
+    width: f32,
+    turned: f32,
+}
+
+fn fiber_period(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, hash: u32) -> Period {
+    var period = Period(PERIOD_PLY, fiber.radius, 0.0, 1.0, 1.0, 0.0);
     if fiber.rank < yarn.flyaway_fibers {
         let choice = unit_from_hash(hash);
         if choice < yarn.loop_chance {
             let draw = yarn.loop_radius_mean + yarn.loop_radius_deviation * normal_from_hash(hash_combine(hash, 1u));
-            outer = max(draw, fiber.radius);
-            profile.flyaway = astray(inner + (outer - inner) * wave);
+            period.kind = PERIOD_LOOP;
+            period.outer = max(draw, fiber.radius);
         } else if choice < yarn.loop_chance + yarn.hair_chance {
             let span = yarn.width_mean + yarn.width_deviation * normal_from_hash(hash_combine(hash, 2u));
-            let width = clamp(abs(span), 0.04, 0.45);
-            let direction = select(-1.0, 1.0, span >= 0.0);
-            let along = (phase - 0.5) * direction / width;
-            if along >= 0.0 && along <= 1.0 {
-                let tip = yarn.tip_min_mean + yarn.tip_min_deviation * normal_from_hash(hash_combine(hash, 3u))
-                    + yarn.tip_span_mean + yarn.tip_span_deviation * normal_from_hash(hash_combine(hash, 4u));
-                let rise = max(tip, fiber.radius) - fiber.radius;
-                let turns = yarn.turns_mean + yarn.turns_deviation * normal_from_hash(hash_combine(hash, 5u));
-                let turned = direction * (turns - width / periods_per_turn);
-                let radius = fiber.radius + rise * along * along;
-                return Profile(
-                    radius,
-                    2.0 * along * rise * direction / width,
-                    2.0 * rise / (width * width),
-                    turned * along * along,
-                    2.0 * along * turned * direction / width,
-                    astray(radius),
-                    1.0 - along * along * along * along,
-                    PIECE_HAIR,
-                );
-            }
-            if along > 1.0 {
-                profile.piece = PIECE_BEYOND;
-                profile.taper = smoothstep(0.0, 0.15, (along - 1.0) * width);
-            }
+            let tip = yarn.tip_min_mean + yarn.tip_min_deviation * normal_from_hash(hash_combine(hash, 3u))
+                + yarn.tip_span_mean + yarn.tip_span_deviation * normal_from_hash(hash_combine(hash, 4u));
+            let turns = yarn.turns_mean + yarn.turns_deviation * normal_from_hash(hash_combine(hash, 5u));
+            period.kind = PERIOD_HAIR;
+            period.outer = max(tip, fiber.radius);
+            period.rise = period.outer - fiber.radius;
+            period.direction = select(-1.0, 1.0, span >= 0.0);
+            period.width = clamp(abs(span), 0.04, 0.45);
+            period.turned = period.direction * (turns - period.width / periods_per_turn);
+        }
+    }
+    return period;
+}
+
+// Share of a period over which a fiber regains its width beyond a hair's tip: 0.15, or what is left of the period there.
+fn regrowth(width: f32) -> f32 {
+    return min(0.15, 0.5 - width);
+}
+
+fn fiber_profile(yarn: Yarn, fiber: Fiber, period: Period, phase: f32) -> Profile {
+    let unit = circle(phase);
+    let wave = 0.5 - 0.5 * unit.x;
+    let inner = fiber.radius * yarn.r_min;
+    var outer = fiber.radius;
+    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
+    if period.kind == PERIOD_LOOP {
+        outer = period.outer;
+        profile.flyaway = astray(inner + (outer - inner) * wave);
+    } else if period.kind == PERIOD_HAIR {
+        let along = (phase - 0.5) * period.direction / period.width;
+        if along >= 0.0 && along <= 1.0 {
+            let along_rate = period.direction / period.width;
+            let radius = fiber.radius + period.rise * along * along;
+            return Profile(
+                radius,
+                2.0 * along * period.rise * along_rate,
+                2.0 * period.rise * along_rate * along_rate,
+                period.turned * along * along,
+                2.0 * along * period.turned * along_rate,
+                astray(radius),
+                1.0 - along * along * along * along,
+                PIECE_HAIR,
+            );
+        }
+        if along > 1.0 {
+            profile.piece = PIECE_BEYOND;
+            profile.taper = smoothstep(0.0, regrowth(period.width), (along - 1.0) * period.width);
         }
     }
     profile.radius = inner + (outer - inner) * wave;
-    profile.radius_rate = (outer - inner) * wave_rate;
+    profile.radius_rate = (outer - inner) * (PI * unit.y);
     profile.radius_acceleration = (outer - inner) * (0.5 * TAU * TAU) * unit.x;
     return profile;
 }
@@ -158,12 +191,18 @@ fn wrapped_period(period: u32, closed_periods: u32) -> u32 {
     return u32(select(select(rest, rest - i32(closed_periods), rest >= i32(closed_periods)), rest + i32(closed_periods), rest < 0));
 }
 
+// Periods of a fiber from the one in which the segment begins.
+fn migration(s: Segment, fiber: Fiber, length: f32) -> f32 {
+    return s.phase + length * s.turns.z + fiber.migration_turns;
+}
+
 fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
-    let position_in_migration = s.phase + p.length * s.turns.z + fiber.migration_turns;
-    let whole = floor(position_in_migration);
+    let migrated = migration(s, fiber, p.length);
+    let whole = floor(migrated);
     var f: FiberSection;
     f.period = wrapped_period(s.period + u32(whole), s.closed_periods);
-    f.profile = fiber_profile(yarn, s.periods_per_turn, fiber, position_in_migration - whole, hash_combine(fiber.hash, f.period));
+    let period = fiber_period(yarn, s.periods_per_turn, fiber, hash_combine(fiber.hash, f.period));
+    f.profile = fiber_profile(yarn, fiber, period, migrated - whole);
     f.phase_rate = p.length_rate * s.turns.z;
     f.unit = circle(
         yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y + f.profile.angle_turns) + fiber.angle_turns,

@@ -14,6 +14,7 @@ const SCENE: Files = files![
     "curve/segment.wgsl",
     "yarn/fiber.wgsl",
     "yarn/detail.wgsl",
+    "yarn/steps.wgsl",
     "passes/scene.wgsl",
 ];
 const WORK: Files = files!["passes/work.wgsl"];

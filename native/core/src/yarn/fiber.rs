@@ -157,7 +157,7 @@ pub fn astray(radius: f64) -> f64 {
 /// Narrowest and widest hair, as a share of its period.
 pub const HAIR_WIDTH: (f64, f64) = (0.04, 0.45);
 
-/// Share of a period over which the fiber regains its width beyond a hair's tip.
+/// Share of a period over which the fiber regains its width beyond a hair's tip, or what is left of the period there.
 const REGROWTH: f64 = 0.15;
 
 fn variate(v: super::Variate, hash: u32, key: u32) -> f64 {
@@ -218,7 +218,7 @@ fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, ph
                 return between(fiber_radius, FiberType::Migration);
             }
             if along > 1.0 {
-                let x = ((along - 1.0) * width / REGROWTH).min(1.0);
+                let x = ((along - 1.0) * width / REGROWTH.min(0.5 - width)).min(1.0);
                 let taper = x * x * (3.0 - 2.0 * x);
                 return Profile { taper, beyond_tip: true, ..between(fiber_radius, FiberType::Migration) };
             }

@@ -5,7 +5,9 @@ use std::collections::HashSet;
 
 use glam::{DVec2, DVec3, DVec4, Vec4Swizzles};
 use lisle_core::sampling::{hash_combine, normal_from_hash, unit_from_hash};
-use lisle_core::yarn::{Fiber, FiberTable, FiberType, HAIR_WIDTH, Knot, Segment, Twist, Yarn, fiber_point};
+use lisle_core::yarn::{
+    Fiber, FiberTable, FiberType, HAIR_WIDTH, Knot, Segment, Twist, Yarn, YarnPoint, breaks, fiber_point,
+};
 use lisle_gpu::{Camera, Object};
 use rayon::prelude::*;
 
@@ -145,7 +147,7 @@ fn taper(yarn: &Yarn, twist: &Twist, table: &FiberTable, length: f64, fiber: Fib
     } else if along <= 1.0 {
         (1.0 - along.powi(4), Piece::Hair, period)
     } else {
-        let x = ((along - 1.0) * width / 0.15).clamp(0.0, 1.0);
+        let x = ((along - 1.0) * width / (0.5 - width).min(0.15)).clamp(0.0, 1.0);
         (x * x * (3.0 - 2.0 * x), Piece::BeyondHair, period)
     }
 }
@@ -178,8 +180,43 @@ fn segments(object: &Object, curve: usize) -> Vec<Segment> {
         .collect()
 }
 
-/// Chords of all fibers of an object, `steps` a segment.
-fn chords(object: &Object, number: u64, steps: u32) -> Vec<Chord> {
+/// How a fiber is divided into chords, and what a chord covers.
+#[derive(Clone, Copy)]
+struct Chain {
+    /// Even steps a segment.
+    steps: u32,
+    /// Whether chords end where the fiber's curve breaks: at tips of hairs, and where it changes its kind.
+    at_breaks: bool,
+    /// Whether chords have round ends: together they have the outline of the tube, also of one that points at the viewer, but past their ends no surface of it.
+    round_ends: bool,
+}
+
+/// Share of a segment that keeps a point on its own side of a tip.
+const ASIDE: f64 = 1e-9;
+
+/// Where a segment has a length coordinate.
+fn parameter(segment: &Segment, length: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        if segment.at(middle).length < length { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// The points of even steps, with those on both sides of each break in their order.
+fn with_breaks(segment: &Segment, even: &[YarnPoint], breaks: impl Iterator<Item = f64>) -> Vec<YarnPoint> {
+    let mut parameters: Vec<f64> = (0..even.len()).map(|k| k as f64 / (even.len() - 1) as f64).collect();
+    for length in breaks {
+        let t = parameter(segment, length);
+        parameters.extend([t - ASIDE, t + ASIDE].map(|t| t.clamp(0.0, 1.0)));
+    }
+    parameters.sort_by(f64::total_cmp);
+    parameters.into_iter().map(|t| segment.at(t)).collect()
+}
+
+/// Chords of all fibers of an object.
+fn chords(object: &Object, number: u64, Chain { steps, at_breaks, .. }: Chain) -> Vec<Chord> {
     let (strands, yarn) = (object.yarns.strands(), &*object.yarn);
     let table = FiberTable::new(yarn);
     let scale = object.world_from_object.determinant().abs().cbrt();
@@ -197,7 +234,11 @@ fn chords(object: &Object, number: u64, steps: u32) -> Vec<Chord> {
                 let fiber = Fiber { seed, ply, index };
                 let id = ((number * 4096 + curve as u64) * 4096 + u64::from(ply)) * 4096 + u64::from(index);
                 let mut previous: Option<Point> = None;
-                for at in &points {
+                let broken = (at_breaks && index < yarn.flyaway_fibers()).then(|| {
+                    let found = breaks(yarn, &twist, &table, fiber, (points[0].length, points[steps as usize].length));
+                    with_breaks(&segment, &points, found.into_iter().map(|b| b.length))
+                });
+                for at in broken.as_ref().unwrap_or(&points) {
                     let f = fiber_point(yarn, &twist, &table, at, fiber);
                     let (taper, piece, period) = taper(yarn, &twist, &table, at.length, fiber);
                     assert_eq!(piece == Piece::Hair, f.kind == FiberType::Hair, "the twin's own hairs are the model's");
@@ -224,23 +265,44 @@ fn joined(a: (Piece, u32), b: (Piece, u32)) -> bool {
     (a.0 == Piece::BeyondHair) == (b.0 == Piece::BeyondHair) || a.1 != b.1
 }
 
-/// The picture of some objects, `steps` chords a segment.
+/// The picture of some objects, `steps` chords a segment, and more where a fiber's curve breaks.
 pub fn picture(objects: &[Object], camera: &Camera, size: [u32; 2], steps: u32) -> Vec<Pixel> {
+    picture_of(objects, camera, size, Chain { steps, at_breaks: true, round_ends: false })
+}
+
+/// The same for outlines alone.
+pub fn outline(objects: &[Object], camera: &Camera, size: [u32; 2], steps: u32) -> Vec<Pixel> {
+    picture_of(objects, camera, size, Chain { steps, at_breaks: true, round_ends: true })
+}
+
+/// Outlines of chords in even steps, whatever happens in between: a hair ends with its last whole step.
+pub fn outline_of_even_steps(objects: &[Object], camera: &Camera, size: [u32; 2], steps: u32) -> Vec<Pixel> {
+    picture_of(objects, camera, size, Chain { steps, at_breaks: false, round_ends: true })
+}
+
+fn picture_of(objects: &[Object], camera: &Camera, size: [u32; 2], chain: Chain) -> Vec<Pixel> {
     let view = View::new(camera, size);
-    let chords: Vec<Chord> = objects.iter().zip(0..).flat_map(|(o, number)| chords(o, number, steps)).collect();
+    let chords: Vec<Chord> = objects.iter().zip(0..).flat_map(|(o, number)| chords(o, number, chain)).collect();
     const BAND: usize = 8;
     let [width, height] = size.map(|s| s as usize);
     let mut pixels = vec![EMPTY; width * height];
     pixels.par_chunks_mut(width * BAND).enumerate().for_each(|(band, pixels)| {
         let rows = band * BAND..(band * BAND + pixels.len() / width);
         for chord in &chords {
-            draw(&view, chord, width, rows.clone(), pixels);
+            draw(&view, chord, chain.round_ends, width, rows.clone(), pixels);
         }
     });
     pixels
 }
 
-fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, pixels: &mut [Pixel]) {
+fn draw(
+    view: &View,
+    chord: &Chord,
+    round_ends: bool,
+    width: usize,
+    rows: std::ops::Range<usize>,
+    pixels: &mut [Pixel],
+) {
     let (wa, wb) = (view.w(chord.a.position), view.w(chord.b.position));
     if wa <= 1e-3 || wb <= 1e-3 {
         return;
@@ -262,7 +324,7 @@ fn draw(view: &View, chord: &Chord, width: usize, rows: std::ops::Range<usize>, 
             let radius = ra + (rb - ra) * t;
             let away = center - (a + along * t);
             // Past its ends a chord only closes the gap that its bend to the next one opens.
-            let past = (on_screen - t).abs() * along.length();
+            let past = if round_ends { 0.0 } else { (on_screen - t).abs() * along.length() };
             if past > EDGE + GAP * radius {
                 continue;
             }
@@ -330,6 +392,28 @@ pub fn fiber_position(object: &Object, segment: usize, t: f64) -> DVec3 {
     let at = segments(object, 0)[segment].at(t);
     let fiber = Fiber { seed, ply: 0, index: 0 };
     object.world_from_object.transform_point3(fiber_point(yarn, &twist, &FiberTable::new(yarn), &at, fiber).position)
+}
+
+/// World positions on the first fiber of the first curve, in a range of segments: the tip of its first hair, and the outermost point of its first loop.
+pub fn flyaways(object: &Object, range: std::ops::Range<usize>) -> [Option<DVec3>; 2] {
+    let (strands, yarn) = (object.yarns.strands(), &*object.yarn);
+    let twist = Twist::new(yarn, strands.total_lengths()[0], strands.reference_radii()[0], strands.closed()[0]);
+    let seed = hash_combine(hash_combine(0x00b1_ec70, object.id), hash_combine(0x11c5_1e00, 0));
+    let (table, fiber) = (FiberTable::new(yarn), Fiber { seed, ply: 0, index: 0 });
+    let segments = segments(object, 0);
+    let length = |segment: usize, t: f64| segments[segment].at(t).length;
+    let found = |length: f64| {
+        let at = range.clone().find(|segment| segments[*segment].at(1.0).length >= length)?;
+        let at = segments[at].at(parameter(&segments[at], length));
+        Some((fiber_point(yarn, &twist, &table, &at, fiber), object.world_from_object))
+    };
+    let breaks = breaks(yarn, &twist, &table, fiber, (length(range.start, 0.0), length(range.end - 1, 1.0)));
+    let tip = breaks.iter().find(|b| b.tip).and_then(|b| found(b.length - 1e-6 / twist.migration));
+    // A period without a break inside is a loop if it is none of the ply's own.
+    let apex = breaks
+        .windows(2)
+        .find_map(|pair| found(0.5 * (pair[0].length + pair[1].length)).filter(|(f, _)| f.kind == FiberType::Loop));
+    [tip, apex].map(|found| found.map(|(f, world)| world.transform_point3(f.position)))
 }
 
 /// Number of distinct fibers that a picture shows.
