@@ -40,8 +40,7 @@ fn screen_ply(yarn: Yarn, s: Segment, ends: array<Detail, 2>, t: f32, ply: u32) 
     );
 }
 
-fn fiber_end(yarn: Yarn, s: Segment, q: ScreenPly, fiber: Fiber) -> FiberEnd {
-    let f = fiber_section(yarn, s, q.yarn, fiber);
+fn fiber_end(yarn: Yarn, q: ScreenPly, fiber: Fiber, f: FiberSection) -> FiberEnd {
     let width = width_factor(yarn, q.detail, fiber.rank, f.profile.flyaway, f.profile.taper);
     let p = q.position + q.radial * f.offset.x + q.tangential * f.offset.y;
     let scale = 1.0 / p.z;

@@ -62,6 +62,31 @@ fn draw_line(line: Line, stroke: Stroke, parts: Parts) {
     }
 }
 
+// A fiber's line between two parameters.
+fn draw_between(a: FiberEnd, b: FiberEnd, begin: f32, to: f32, owner: Key, parts: Parts) {
+    let orthographic = frame.viewer.w > 0.5;
+    let line = make_line(a.line, b.line, orthographic);
+    let chord = b.line.depth - a.line.depth;
+    // Of its own width, the fiber is round: where it stands for several, it is flatter.
+    let lean = line_lean(line, orthographic);
+    let thickness = lean / (max(a.width, 1.0) * frame.pixels_per_unit);
+    let stroke = Stroke(
+        owner,
+        begin * place_scale() + 0.5,
+        (to - begin) * place_scale(),
+        a.depth_rate * (to - begin) - chord,
+        b.depth_rate * (to - begin) - chord,
+        thickness * select(a.line.depth, 1.0, orthographic),
+        thickness * select(b.line.depth, 1.0, orthographic),
+        1.0 / lean,
+    );
+    draw_line(line, stroke, parts);
+}
+
+fn is_in_view(a: FiberEnd, b: FiberEnd) -> bool {
+    return max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near;
+}
+
 // The segment whose work contains an item, and how far into it the item is.
 struct Found {
     segment: u32,
@@ -119,53 +144,22 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
     let steps = fiber_steps(yarn, rates, scale.radius_pixels);
     let seed = ply_seed(s.seed, ply);
     let first_slot = ply * (yarn.fibers + 1u) + 1u;
-    let orthographic = frame.viewer.w > 0.5;
+    // Those that may fly away have the first ranks.
+    let first_regular = max(first, yarn.flyaway_fibers);
     var start = screen_ply(yarn, s, scale.ends, 0.0, ply);
     var step = 1u;
     loop {
         let t0 = f32(step - 1u) / f32(steps);
         let t1 = f32(step) / f32(steps);
         let end = screen_ply(yarn, s, scale.ends, t1, ply);
-        var rank = first;
+        var rank = first_regular;
         loop {
             // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
             let fiber = fiber_at(yarn, seed, rank);
-            var a = fiber_end(yarn, s, start, fiber);
-            var begin = t0;
-            loop {
-                var to = t1;
-                var at = end;
-                if rank < yarn.flyaway_fibers {
-                    to = line_end(yarn, s, rates, fiber, scale.radius_pixels, begin, t1);
-                    if to < t1 {
-                        at = screen_ply(yarn, s, scale.ends, to, ply);
-                    }
-                }
-                let b = fiber_end(yarn, s, at, fiber);
-                if rank < last && max(a.line.radius, b.line.radius) > 0.0 && min(a.line.depth, b.line.depth) > frame.near
-                    && joined(a.piece, a.period, b.piece, b.period) {
-                    let line = make_line(a.line, b.line, orthographic);
-                    let chord = b.line.depth - a.line.depth;
-                    // Of its own width, the fiber is round: where it stands for several, it is flatter.
-                    let lean = line_lean(line, orthographic);
-                    let thickness = lean / (max(a.width, 1.0) * frame.pixels_per_unit);
-                    let stroke = Stroke(
-                        key_owner(segment, first_slot + rank),
-                        begin * place_scale() + 0.5,
-                        (to - begin) * place_scale(),
-                        a.depth_rate * (to - begin) - chord,
-                        b.depth_rate * (to - begin) - chord,
-                        thickness * select(a.line.depth, 1.0, orthographic),
-                        thickness * select(b.line.depth, 1.0, orthographic),
-                        1.0 / lean,
-                    );
-                    draw_line(line, stroke, parts);
-                }
-                if to >= t1 {
-                    break;
-                }
-                a = b;
-                begin = to;
+            let a = fiber_end(yarn, start, fiber, regular_section(yarn, s, start.yarn, fiber));
+            let b = fiber_end(yarn, end, fiber, regular_section(yarn, s, end.yarn, fiber));
+            if rank < last && is_in_view(a, b) {
+                draw_between(a, b, t0, t1, key_owner(segment, first_slot + rank), parts);
             }
             rank++;
             if rank >= last {
@@ -174,7 +168,35 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         }
         start = end;
         step++;
-        if step > steps {
+        if step > steps || first_regular >= last {
+            break;
+        }
+    }
+    let last_flyaway = min(last, yarn.flyaway_fibers);
+    var rank = first;
+    loop {
+        let fiber = fiber_at(yarn, seed, rank);
+        var at = screen_ply(yarn, s, scale.ends, 0.0, ply);
+        var a = fiber_end(yarn, at, fiber, fiber_section(yarn, s, at.yarn, fiber));
+        var begin = 0.0;
+        step = 1u;
+        loop {
+            let t1 = f32(step) / f32(steps);
+            let to = line_end(yarn, s, rates, fiber, scale.radius_pixels, begin, t1);
+            at = screen_ply(yarn, s, scale.ends, to, ply);
+            let b = fiber_end(yarn, at, fiber, fiber_section(yarn, s, at.yarn, fiber));
+            if rank < last_flyaway && is_in_view(a, b) && joined(a.piece, a.period, b.piece, b.period) {
+                draw_between(a, b, begin, to, key_owner(segment, first_slot + rank), parts);
+            }
+            a = b;
+            begin = to;
+            step += select(0u, 1u, to >= t1);
+            if step > steps || rank >= last_flyaway {
+                break;
+            }
+        }
+        rank++;
+        if rank >= last_flyaway {
             break;
         }
     }

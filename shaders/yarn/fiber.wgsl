@@ -103,8 +103,12 @@ struct Period {
     turned: f32,
 }
 
+fn regular_period(fiber: Fiber) -> Period {
+    return Period(PERIOD_PLY, fiber.radius, 0.0, 1.0, 1.0, 0.0);
+}
+
 fn fiber_period(yarn: Yarn, periods_per_turn: f32, fiber: Fiber, hash: u32) -> Period {
-    var period = Period(PERIOD_PLY, fiber.radius, 0.0, 1.0, 1.0, 0.0);
+    var period = regular_period(fiber);
     if fiber.rank < yarn.flyaway_fibers {
         let choice = unit_from_hash(hash);
         if choice < yarn.loop_chance {
@@ -196,24 +200,34 @@ fn migration(s: Segment, fiber: Fiber, length: f32) -> f32 {
     return s.phase + length * s.turns.z + fiber.migration_turns;
 }
 
-fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
-    let migrated = migration(s, fiber, p.length);
-    let whole = floor(migrated);
+// A fiber of that shape.
+fn section_of(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber, profile: Profile, period: u32) -> FiberSection {
     var f: FiberSection;
-    f.period = wrapped_period(s.period + u32(whole), s.closed_periods);
-    let period = fiber_period(yarn, s.periods_per_turn, fiber, hash_combine(fiber.hash, f.period));
-    f.profile = fiber_profile(yarn, fiber, period, migrated - whole);
+    f.period = period;
+    f.profile = profile;
     f.phase_rate = p.length_rate * s.turns.z;
-    f.unit = circle(
-        yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y + f.profile.angle_turns) + fiber.angle_turns,
-    );
-    f.angle_rate = TAU * yarn.fiber_sign * (p.length_rate * s.turns.y + f.profile.angle_rate * f.phase_rate);
+    f.unit = circle(yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y + profile.angle_turns) + fiber.angle_turns);
+    f.angle_rate = TAU * yarn.fiber_sign * (p.length_rate * s.turns.y + profile.angle_rate * f.phase_rate);
     let half_axes = vec2f(yarn.ellipse_short, yarn.ellipse_long);
-    let radius = f.profile.radius * p.radius;
-    let radius_rate = f.profile.radius * p.radius_rate + f.profile.radius_rate * f.phase_rate * p.radius;
+    let radius = profile.radius * p.radius;
+    let radius_rate = profile.radius * p.radius_rate + profile.radius_rate * f.phase_rate * p.radius;
     f.offset = half_axes * f.unit * radius;
     f.rate = half_axes * (vec2f(-f.unit.y, f.unit.x) * (f.angle_rate * radius) + f.unit * radius_rate);
     return f;
+}
+
+fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
+    let migrated = migration(s, fiber, p.length);
+    let whole = floor(migrated);
+    let number = wrapped_period(s.period + u32(whole), s.closed_periods);
+    let period = fiber_period(yarn, s.periods_per_turn, fiber, hash_combine(fiber.hash, number));
+    return section_of(yarn, s, p, fiber, fiber_profile(yarn, fiber, period, migrated - whole), number);
+}
+
+// Of a fiber that never flies away: the same, and much less to do.
+fn regular_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
+    let phase = fract(migration(s, fiber, p.length));
+    return section_of(yarn, s, p, fiber, fiber_profile(yarn, fiber, regular_period(fiber), phase), 0u);
 }
 
 struct FiberPoint {

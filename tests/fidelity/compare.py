@@ -124,7 +124,7 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
     part = (low, low, high, high)
     all_orders = [draw(seed=seed, transport_photons=500_000, region=part) for seed in (0, 1)]
     full = colour(draw(lod_pixels=0))
-    single = lisle.Reference().render(scene(), bounces=1, samples=samples)
+    single = lisle.Reference().render(scene(), bounces=1, samples=models.REFERENCE_SAMPLES[case.view] * samples)
     multiple = lisle.Reference().render(scene(), samples=samples, seed=1, region=part)
     alpha = 0.5 * sum(float(image["alpha"].mean(dtype=np.float64)) for image in rendered)
     expected = colour(single)
@@ -158,7 +158,7 @@ def hot_spot(renderer: lisle.Renderer, samples: int) -> list[tuple[int, float, f
         Angle between the ways to the sun and to the camera in degrees, mean error of a yarn and its noise, and the
         same of one fiber.
     """
-    yarns = models.straight()
+    yarns = models.lone()
     yarn = lisle.Yarn.preset("cotton-1").replace(loop_density=0.0, hair_density=0.0)
     one = yarn.replace(plies=1, fibers_per_ply=1)
     material = lisle.Material.preset(models.MATERIALS["light"])

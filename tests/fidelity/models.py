@@ -16,6 +16,9 @@ SPAN = 48.0
 VIEWS = {"near": (6.0, 96), "middle": (24.0, 96), "far": (40.0, 48)}
 """Height of the picture, and its pixels: a yarn is 32, 8 and 2.4 pixels wide."""
 
+REFERENCE_SAMPLES = {"near": 1, "middle": 1, "far": 16}
+"""Times as many samples by the reference: few pixels, each of many fibers, are noisy."""
+
 PART = 48
 """Side of the middle of a picture in which light of all orders is compared, pixels: it takes many more samples."""
 
@@ -32,10 +35,18 @@ BACKWARD = np.array([0.15, -1.0, 0.2]) / np.linalg.norm([0.15, -1.0, 0.2])
 HALF_ANGLE_RAD = 0.3
 
 
-def straight() -> lisle.Yarns:
+def lone() -> lisle.Yarns:
     """One yarn along X."""
     x = np.linspace(-0.5 * SPAN, 0.5 * SPAN, 49)
     return lisle.Yarns(np.column_stack([x, 0 * x, 0 * x]), [0, len(x)], yarn_radius=1.0)
+
+
+def straight() -> lisle.Yarns:
+    """Eleven yarns along X, 4 apart: each has fibers of its own, which decide how bright it is."""
+    one = lone().points
+    heights = np.arange(-5, 6) * 4.0
+    points = np.concatenate([one + [0.0, 0.0, height] for height in heights])
+    return lisle.Yarns(points, np.arange(len(heights) + 1) * len(one), yarn_radius=1.0)
 
 
 def knit() -> lisle.Yarns:
