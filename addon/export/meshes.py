@@ -87,7 +87,7 @@ class MeshReader:
 
     def _parts(self, obj, plans):
         """[(material index, Surface)]"""
-        maps = tuple(None if plan.image is None else plan.uv_map for plan in plans)
+        maps = tuple(None if plan.image is None else (plan.uv_map, plan.mapping) for plan in plans)
         key = obj.data.as_pointer() if obj.type == "MESH" else obj.as_pointer(), maps
         if key not in self._parts_of:
             with evaluated_mesh(obj) as mesh:
@@ -121,10 +121,10 @@ def mesh_kind(obj):
 
 
 def plan_of(material, note):
-    """What is taken of a material: `color`, scene-linear (r, g, b); `image` in its stead, or None, and the name of its
-    `uv_map`. The colour is that of the node that makes the surface, or the one in the viewport. Tells `note` what is
-    left out."""
-    plan = SimpleNamespace(color=_GREY, image=None, uv_map="")
+    """What is taken of a material: `color`, scene-linear (r, g, b); `image` in its stead, or None, the name of its
+    `uv_map`, and its `mapping`. The colour is that of the node that makes the surface, or the one in the viewport.
+    Tells `note` what is left out."""
+    plan = SimpleNamespace(color=_GREY, image=None, uv_map="", mapping=None)
     if material is None:
         return plan
     color = material.diffuse_color
@@ -157,7 +157,8 @@ def _surface(material):
 
 
 def _read(mesh, maps):
-    """[(material index, Surface)] of an evaluated mesh; `maps` are names of UV maps by material, None without one."""
+    """[(material index, Surface)] of an evaluated mesh; `maps` are (name, mapping) of UV maps by material, None without
+    one."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     if not count:
@@ -178,7 +179,7 @@ def _read(mesh, maps):
         normals = at_corners.reshape(-1, 3)[corners]
 
     def uvs(index):
-        name = maps[min(index, len(maps) - 1)]
-        return None if name is None else textures.uvs_of(mesh, name, corners)
+        place = maps[min(index, len(maps) - 1)]
+        return None if place is None else textures.uvs_of(mesh, *place, corners)
 
     return by_material(positions.reshape(-1, 3), triangles.reshape(-1, 3), normals, material_index, uvs)

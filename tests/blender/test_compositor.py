@@ -90,8 +90,8 @@ def test_the_denoise_node_takes_what_is_delivered_for_it(lisle, tmp_path):
     bpy.ops.lisle.add_knit_swatch(courses=6, wales=8, yarn_radius=0.1, rotation=(-1.5708, 0, 0))
     sun = scenes.link(bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN")))
     sun.data.energy, sun.rotation_euler = 3, (0.7, 0.3, 0)
-    scene.render.resolution_x, scene.render.resolution_y = 256, 192
-    scene.lisle.samples = 256
+    scene.render.resolution_x, scene.render.resolution_y = 160, 120
+    scene.lisle.samples = 64
     clean = scenes.render_rgba(tmp_path / "a.exr")[..., :3]
     scene.lisle.samples = 1
     noisy = scenes.render_rgba(tmp_path / "b.exr")[..., :3]

@@ -108,7 +108,18 @@ def test_what_cannot_be_taken_is_noted_and_the_viewports_colour_counts(lisle):
     node.projection = "FLAT"
     mapping = tree.nodes.new("ShaderNodeMapping")
     tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
+    refused("not placed by a UV map and fixed numbers alone")
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
     refused("not placed by a UV map alone")
+    tree.links.new(coordinates.outputs["UV"], mapping.inputs["Vector"])
+    assert not collected(lisle)[1]
+    tree.links.new(coordinates.outputs["Normal"], mapping.inputs["Scale"])
+    refused("not placed by a UV map and fixed numbers alone")
+    tree.links.remove(mapping.inputs["Scale"].links[0])
+    mapping.vector_type = "NORMAL"
+    refused("not placed by a UV map and fixed numbers alone")
+    tree.links.remove(mapping.inputs["Vector"].links[0])
     mapping.mute = True
     assert not collected(lisle)[1]
     node.image.source = "SEQUENCE"
@@ -126,6 +137,50 @@ def test_what_cannot_be_taken_is_noted_and_the_viewports_colour_counts(lisle):
     refused("what is linked to Base Color is ignored")
     bpy.data.materials["Checked"].node_tree.links.remove(principled.inputs["Base Color"].links[0])
     assert not collected(lisle)[1]
+
+
+@pytest.mark.blender("wheel")
+@pytest.mark.parametrize("kind", ["POINT", "TEXTURE", "VECTOR"])
+def test_a_mapping_places_the_picture_as_in_cycles(lisle, tmp_path, kind):
+    import bpy
+    import scenes
+
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    bpy.ops.mesh.primitive_plane_add(size=20)
+    plane = bpy.context.active_object
+    picture = bpy.data.images.new("Steps", 8, 8)
+    picture.colorspace_settings.name = "Non-Color"  # otherwise Cycles mixes codes between texels, Lisle light
+    values = np.random.default_rng(3).random((8, 8, 4)).astype(np.float32)
+    values[..., 3] = 1
+    picture.pixels.foreach_set(values.ravel())
+    picture.update()
+    made = material("Checked", (1, 1, 1, 1))
+    tree = made.node_tree
+    node, mapping, coordinates = (tree.nodes.new(f"ShaderNode{name}") for name in ("TexImage", "Mapping", "TexCoord"))
+    node.image, mapping.vector_type = picture, kind
+    mapping.inputs["Rotation"].default_value = (0, 0, 0.5)
+    mapping.inputs["Scale"].default_value = (1.5, 0.7, 1)
+    if kind != "VECTOR":
+        mapping.inputs["Location"].default_value = (0.3, 0.2, 0)
+    diffuse = tree.nodes.new("ShaderNodeBsdfDiffuse")
+    tree.links.new(coordinates.outputs["UV"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
+    tree.links.new(node.outputs["Color"], diffuse.inputs["Color"])
+    tree.links.new(diffuse.outputs["BSDF"], tree.get_output_node("ALL").inputs["Surface"])
+    plane.data.materials.append(made)
+    scene.lisle.samples, layer.lisle.use_pass_denoising = 16, True
+    ours = scenes.render_channels(tmp_path / "a.exr", multilayer=True)
+    scene.render.engine, layer.use_pass_diffuse_color = "CYCLES", True
+    scene.cycles.samples, scene.cycles.use_denoising = 64, False
+    theirs = scenes.render_channels(tmp_path / "b.exr", multilayer=True)
+    named = "Diffuse Color" if bpy.app.version >= (5, 0, 0) else "DiffCol"
+    a, b = (
+        np.stack([channels[f"ViewLayer.{name}.{letter}"] for letter in "RGB"])
+        for channels, name in ((ours, "Denoising Albedo"), (theirs, named))
+    )
+    assert a.std() > 0.05
+    assert np.abs(a - b).mean() < 0.02, np.abs(a - b).mean()
+    assert np.abs(a - b[:, ::-1]).mean() > 0.05
 
 
 def test_views_notice_that_a_picture_was_painted(lisle):
