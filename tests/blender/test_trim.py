@@ -155,8 +155,12 @@ def test_a_part_is_drawn_as_in_the_whole(lisle, tmp_path):
     sun.data.energy = 3
     bpy.context.scene.lisle.samples = 16
     whole = scenes.render_rgba(tmp_path / "a.exr")
-    shorten(obj, 0, 0.5)
-    part = scenes.render_rgba(tmp_path / "b.exr")
-    assert not part[:, 34:, 3].any() and whole[20:28, 34:50, 3].mean() > 0.5
-    inside = np.s_[:, 10:28]
-    assert np.abs(part[inside] - whole[inside]).mean() < 0.05 * np.abs(whole[inside]).mean()
+    for shares, empty, there in (
+        ((0, 0.5), np.s_[:, 34:], np.s_[:, 10:28]),
+        ((0.5, 1), np.s_[:, :30], np.s_[:, 36:54]),
+    ):
+        shorten(obj, *shares)
+        part = scenes.render_rgba(tmp_path / "b.exr")
+        assert not part[empty][..., 3].any() and whole[there][20:28, :, 3].mean() > 0.5
+        assert np.abs(part[there] - whole[there]).mean() < 0.05 * np.abs(whole[there]).mean()
+        assert np.abs(part[there] - whole[there][:, ::-1]).mean() > 0.1 * np.abs(whole[there]).mean()
