@@ -128,7 +128,7 @@ class LisleYarn(bpy.types.PropertyGroup):
         description="Fibers twisted into each ply",
         min=1,
         soft_max=300,
-        max=4000,
+        max=60000,
         default=75,
         update=_tag,
     )

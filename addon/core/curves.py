@@ -102,10 +102,11 @@ class CurveArrays:
         """Why these curves cannot be the moved curves `rest`, in words, or None if they can."""
         if self.curve_count != rest.curve_count:
             return f"it has {self.curve_count} curves, {rest.curve_count} at rest"
-        if len(self.points) != len(rest.points):
-            return f"it has {len(self.points)} points, {len(rest.points)} at rest"
+        counts, rest_counts = np.diff(self.offsets.astype(np.int64)), np.diff(rest.offsets.astype(np.int64))
+        if (counts != rest_counts).any():
+            curve = int(np.flatnonzero(counts != rest_counts)[0])
+            return f"its curve {curve} has {counts[curve]} points, {rest_counts[curve]} at rest"
         for name, what in (
-            ("offsets", "number of points"),
             ("closed", "cyclic setting"),
             ("basis", "curve type"),
             ("nurbs_order", "NURBS order"),
@@ -115,8 +116,7 @@ class CurveArrays:
             if (mine is None) != (theirs is None):
                 return f"its {what} is set at one of the two only"
             if mine is not None and not np.array_equal(mine, theirs):
-                skip = 1 if name == "offsets" else 0
-                curve = max(int(np.flatnonzero(mine != theirs)[0]) - skip, 0)
+                curve = int(np.flatnonzero(mine != theirs)[0])
                 return f"the {what} of curve {curve} differs"
         return None
 

@@ -88,8 +88,8 @@ def test_selecting_curves_keeps_their_points():
     ("other", "words"),
     [
         (arrays([3, 4, 2]), "2 curves, 3 at rest"),
-        (arrays([3, 5]), "7 points, 8 at rest"),
-        (arrays([4, 3]), "number of points of curve 0 differs"),
+        (arrays([3, 5]), "curve 1 has 4 points, 5 at rest"),
+        (arrays([4, 3]), "curve 0 has 3 points, 4 at rest"),
         (arrays([3, 4], closed=np.array([False, True])), "cyclic setting of curve 1 differs"),
         (arrays([3, 4], basis=np.array([BEZIER, CATMULL_ROM], np.uint8)), "curve type of curve 0 differs"),
         (arrays([3, 4], nurbs_order=np.array([4, 4], np.uint8)), "NURBS order is set at one"),

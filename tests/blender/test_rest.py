@@ -169,7 +169,7 @@ def test_changing_point_counts_are_an_error_that_names_them(lisle, tmp_path):
 
     growing()
     scenes.use_exr(tmp_path / "f_")
-    words = r"object 'Yarn': it has 4 points, 3 at rest \(frame 2 against reference frame 1\).*Re-measure"
+    words = r"object 'Yarn': its curve 0 has 4 points, 3 at rest \(frame 2 against reference frame 1\).*Re-measure"
     with pytest.raises(RuntimeError, match=words):
         bpy.ops.render.render(animation=True)
     assert [path.name for path in tmp_path.iterdir()] == ["f_0001.exr"]

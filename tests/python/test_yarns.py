@@ -121,7 +121,7 @@ def test_bad_input_is_named(arguments, words):
 
 def test_a_frame_with_other_points_is_refused():
     yarns = lisle.Yarns(line(), [0, 5], yarn_radius=0.02, name="cuff")
-    with pytest.raises(lisle.InputError, match=r"cuff: .*6 in this frame, 5 in the rest shape"):
+    with pytest.raises(lisle.InputError, match=r"cuff: curve 0, point 5: .*6 in this frame, 5 in the rest shape"):
         yarns.with_points(line(6))
     with pytest.raises(lisle.InputError, match=r"cuff: curve 0, point 2"):
         yarns.with_points(NAN)

@@ -92,9 +92,14 @@ pub enum Error {
         value: f32,
     },
 
-    /// A frame with another number of points than the rest shape.
-    #[error("the number of points changed: {new} in this frame, {old} in the rest shape")]
+    /// A frame with another number of points than the rest shape. Points alone do not tell the curve that lost or gained them: named is the first
+    /// point of the rest shape that the frame has none for, or the one after its last.
+    #[error("curve {curve}, point {index}: the number of points changed: {new} in this frame, {old} in the rest shape")]
     PointCountChanged {
+        /// Curve of the rest shape.
+        curve: usize,
+        /// Point within the curve.
+        index: usize,
         /// Points of the rest shape.
         old: usize,
         /// Points of the refused frame.

@@ -171,9 +171,16 @@ fn coincident_points() {
 #[test]
 fn the_point_count_changes() {
     let yarns = Yarns::new(two_curves(), Some(0.1)).expect("valid");
-    let error = yarns.with_points(&line(8)).expect_err("another count");
-    assert!(matches!(error, Error::PointCountChanged { old: 9, new: 8 }));
-    says(&error, &["9", "8"]);
+    // Curves of four and five points.
+    for (count, curve, index) in [(0, 0, 0), (3, 0, 3), (4, 1, 0), (8, 1, 4), (10, 1, 5)] {
+        let error = yarns.with_points(&line(count)).expect_err("another count");
+        let Error::PointCountChanged { curve: c, index: i, old: 9, new } = error else { panic!("{error}") };
+        assert_eq!((c, i, new), (curve, index, count), "{error}");
+        says(
+            &error,
+            &[&format!("curve {curve}, point {index}"), "9 in the rest shape", &format!("{count} in this frame")],
+        );
+    }
 }
 
 #[test]

@@ -219,8 +219,8 @@ fn yarns_of_any_size_and_make_are_drawn() {
     let cases = [
         ("one segment", object(&short, &base), 100.0),
         ("one ply, one fiber", object(&short, &Yarn { plies: 1, fibers_per_ply: 1, ..base.clone() }), 3.0),
-        ("4000 fibers", object(&short, &Yarn { plies: 4, fibers_per_ply: 1000, ..base.clone() }), 100.0),
-        ("one ply of 4000", object(&short, &Yarn { plies: 1, fibers_per_ply: 4000, ..base.clone() }), 100.0),
+        ("60,000 fibers", object(&short, &Yarn { plies: 4, fibers_per_ply: 15_000, ..base.clone() }), 100.0),
+        ("one ply of 60,000", object(&short, &Yarn { plies: 1, fibers_per_ply: 60_000, ..base.clone() }), 100.0),
         ("4000 plies", object(&short, &Yarn { plies: 4000, fibers_per_ply: 1, ..base.clone() }), 100.0),
         ("no flyaways", object(&short, &plain), 100.0),
         ("thick fibers", object(&short, &Yarn { fiber_radius: 0.05, ..base.clone() }), 100.0),
@@ -274,5 +274,45 @@ fn lights_within_the_yarn_and_without_size_give_finite_pictures() {
         let mut scene = lit(vec![wave()], camera());
         scene.lights = vec![light];
         finite(name, &scene);
+    }
+}
+
+#[test]
+fn more_points_than_a_key_has_numbers_for_are_refused() {
+    // Instances share their points, and count each.
+    let yarns = yarns_of(curves::straight(2.0, 10_001), false, 0.05);
+    let yarn = Yarn { plies: 4, fibers_per_ply: 15_000, ..preset("cotton-1") };
+    let scene = |count| lit(vec![object(&yarns, &yarn); count], camera());
+    let error = try_draw(&scene(106), &settings()).expect_err("too many points");
+    let Error::Input { what, reason } = &error else { panic!("{error}") };
+    assert_eq!(what, "scene");
+    assert!(reason.contains("1060318 control points") && reason.contains("too many for one picture"), "{reason}");
+    assert!(measure::area(&draw(&scene(1), &settings())) > 100.0, "the next picture");
+}
+
+#[test]
+fn ten_million_points_are_drawn_and_more_than_a_buffer_holds_are_refused() {
+    // Rows of a cloth of which the camera sees a hundredth.
+    let row = |k: usize| {
+        let (x, z) = (2.0 * (k % 1000) as f64 / 999.0 - 1.0, 0.01 * (k / 1000) as f64 - 0.5);
+        DVec3::new(x, 0.0, z).as_vec3().to_array()
+    };
+    let yarns = |count: usize| {
+        let rows = (0..count).collect::<Vec<_>>();
+        let curves = rows.chunks(1000).map(|row_of| row_of.iter().map(|k| row(*k)).collect()).collect();
+        Arc::new(Yarns::new(Curves::catmull_rom(curves, false), Some(1e-4)).expect("valid curves"))
+    };
+    let settings = Settings { samples: 1, ..settings() };
+    let image = draw(&lit(vec![object(&yarns(10_000_000), &preset("cotton-1"))], camera()), &settings);
+    assert_eq!(measure::not_finite(&image), 0);
+    println!("area {:.1}, brightness {:.3}", measure::area(&image), measure::brightness(&image));
+    assert!(measure::area(&image) > 40.0, "{}", measure::area(&image));
+
+    match try_draw(&lit(vec![object(&yarns(12_000_000), &preset("cotton-1"))], camera()), &settings) {
+        Ok(image) => assert!(measure::area(&image) > 40.0, "an adapter with larger buffers"),
+        Err(error) => {
+            let said = error.to_string();
+            assert!(said.contains("control points (positions) need 137 MiB; a buffer holds at most"), "{said}");
+        }
     }
 }

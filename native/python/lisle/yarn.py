@@ -17,7 +17,7 @@ class Yarn:
 
     Args:
         plies: plies per yarn, K ≥ 1.
-        fibers_per_ply: m ≥ 1; plies × fibers_per_ply ≤ 4000.
+        fibers_per_ply: m ≥ 1; plies × fibers_per_ply ≤ 60,000.
         density_beta: exponent β of the radial fiber density, ≥ 0.
         density_epsilon: floor ε of the radial fiber density, 0 to 0.5.
         fiber_twist: ply length per full turn of its fibers; the sign is the handedness.

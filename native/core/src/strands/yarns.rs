@@ -150,7 +150,12 @@ impl Yarns {
     pub fn with_points(&self, points: &[[f32; 3]]) -> Result<Self, Error> {
         let old = self.points.len();
         if points.len() != old {
-            return Err(Error::PointCountChanged { old, new: points.len() });
+            let new = points.len();
+            let curves = &self.rest.curves;
+            let is_before = |curve: &usize| curves.range(*curve).end <= new;
+            let curve = (0..curves.len() - 1).find(|curve| !is_before(curve)).unwrap_or(curves.len() - 1);
+            let index = new.min(old) - curves.range(curve).start;
+            return Err(Error::PointCountChanged { curve, index, old, new });
         }
         self.rest.curves.validate_points(points)?;
         Ok(Self { rest: self.rest.clone(), points: Arc::new(points.to_vec()), strands: OnceLock::new() })

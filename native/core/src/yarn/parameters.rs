@@ -74,8 +74,10 @@ pub struct YarnError {
     pub expected: &'static str,
 }
 
-/// Fibers a yarn may have in all: the bound that keeps a fiber's number in 12 bits of a visibility key.
-const MAX_FIBERS: u32 = 4000;
+/// Fibers a yarn may have in all: so many that their numbers and those of a million control points fit into a visibility key of 64 bits.
+const MAX_FIBERS: u32 = 60_000;
+/// Tables of a yarn's section take a time that grows with its plies: for so many, seconds.
+const MAX_PLIES: u32 = 4000;
 
 impl Yarn {
     /// Distance from the yarn centre to the farthest point of a ply, table units: ½ R_ply + e_B (e_B alone for one ply).
@@ -133,10 +135,15 @@ impl Yarn {
                 "a finite length per turn, not 0 (the sign is the handedness)",
             )
         };
-        check(self.plies >= 1, "plies", f64::from(self.plies), "at least 1")?;
+        check((1..=MAX_PLIES).contains(&self.plies), "plies", f64::from(self.plies), "1 to 4000")?;
         check(self.fibers_per_ply >= 1, "fibers_per_ply", f64::from(self.fibers_per_ply), "at least 1")?;
         let fibers = u64::from(self.plies) * u64::from(self.fibers_per_ply);
-        check(fibers <= u64::from(MAX_FIBERS), "plies × fibers_per_ply", fibers as f64, "at most 4000")?;
+        check(
+            fibers <= u64::from(MAX_FIBERS),
+            "plies × fibers_per_ply",
+            fibers as f64,
+            "at most 60000, whose numbers leave a visibility key room for a million control points",
+        )?;
         positive("ellipse_long", self.ellipse_long)?;
         positive("ellipse_short", self.ellipse_short)?;
         positive("fiber_radius", self.fiber_radius)?;

@@ -85,4 +85,21 @@ mod tests {
         let yarn = Yarn { r_min: 1.5, ..Yarn::preset("silk-1").expect("preset") };
         assert_eq!(yarn.validate().expect_err("r_min above 1").parameter, "r_min");
     }
+
+    #[test]
+    fn as_many_fibers_as_a_key_has_numbers_for_are_taken_and_no_more() {
+        let of = |plies, fibers_per_ply| Yarn { plies, fibers_per_ply, ..Yarn::preset("silk-1").expect("preset") };
+        for (plies, fibers_per_ply) in [(1, 60_000), (4, 15_000), (4000, 15)] {
+            of(plies, fibers_per_ply).validate().expect("few enough");
+        }
+        for (plies, fibers_per_ply, parameter) in [
+            (1, 60_001, "plies × fibers_per_ply"),
+            (4000, 16, "plies × fibers_per_ply"),
+            (4001, 1, "plies"),
+            (0, 9, "plies"),
+        ] {
+            let error = of(plies, fibers_per_ply).validate().expect_err("too many or none");
+            assert_eq!(error.parameter, parameter, "{error}");
+        }
+    }
 }
