@@ -146,7 +146,7 @@ struct Yarn {
     seen_sky_size: u32,
     // Share of the light on the yarn that goes through between its fibers.
     through_circle: f32,
-    // The core texture's heights once more, two to a word: visibility wants nothing else of it, and waits for memory.
+    // The core texture's heights once more, with their fibers' places in the order of drawing, two to a word: visibility wants nothing else, and waits for memory.
     core_heights: u32,
 }
 

@@ -68,6 +68,47 @@ fn core_chance(pixel: vec2u) -> CoreChance {
     return CoreChance(unit_from_hash(hash_combine(hash, 1u)), unit_from_hash(hash));
 }
 
+// What visibility wants of a texel: the height, and where its fiber is in the layer's order, packed by native/gpu/src/tables.rs.
+struct CoreHeight {
+    // HOLE of native/precompute/src/core_fiber.rs where there is none.
+    height: f32,
+    // Share of the layer's own fibers before this one; 1 for those of the next layer.
+    place: f32,
+}
+
+// Bits of a place.
+const PLACE_BITS: u32 = 5u;
+
+fn core_height_at(yarn: Yarn, texel: u32) -> CoreHeight {
+    let half = (tables[yarn.core_heights + texel / 2u] >> (16u * (texel & 1u))) & 0xffffu;
+    let last_height = f32((1u << (16u - PLACE_BITS)) - 1u);
+    let last_place = f32((1u << PLACE_BITS) - 1u);
+    return CoreHeight(4.0 * f32(half >> PLACE_BITS) / last_height - 2.0, f32(half & ((1u << PLACE_BITS) - 1u)) / last_place);
+}
+
+// A texel and its height.
+struct CoreShown {
+    texel: u32,
+    height: f32,
+}
+
+// A fiber that is drawn one by one is not shown again: the next layer has what lies behind it. The one that is fading is there or not, by chance.
+fn core_shown(yarn: Yarn, hit: CoreHit, fibers: f32, chance: CoreChance) -> CoreShown {
+    let chosen = core_texture(yarn, hit.depth_share, fibers, chance);
+    let texel = core_texel(yarn, chosen, hit.turns, hit.v);
+    let first = core_height_at(yarn, texel);
+    var shown = CoreShown(texel, first.height);
+    if (chosen.drawn_share - first.place) * chosen.own_fibers > chance.fiber {
+        if chosen.layer + 1u < yarn.core_layers {
+            shown.texel += yarn.core_length * yarn.core_width;
+            shown.height = core_height_at(yarn, shown.texel).height;
+        } else {
+            shown.height = -2.0;
+        }
+    }
+    return shown;
+}
+
 // The visible fiber of a texel: its height, and the offset across it.
 struct CoreSurface {
     height: f32,
@@ -77,11 +118,6 @@ struct CoreSurface {
 fn core_surface_at(yarn: Yarn, texel: u32) -> CoreSurface {
     let values = unpack2x16snorm(tables[yarn.core_table + 2u * texel]);
     return CoreSurface(2.0 * values.x, values.y);
-}
-
-// The height alone.
-fn core_height_at(yarn: Yarn, texel: u32) -> f32 {
-    return 2.0 * unpack2x16snorm(tables[yarn.core_heights + texel / 2u] >> (16u * (texel & 1u))).x;
 }
 
 // d(h, v) / d theta of the visible fiber.

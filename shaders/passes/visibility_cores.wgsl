@@ -17,8 +17,7 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
         let hit = core_hit(a, b, vec2f(pixel) + 0.5);
         if walk_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= yarn.core_half_width {
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
-            let chosen = core_texture(yarn, hit.depth_share, detail.fibers, core_chance(vec2u(pixel)));
-            let height = core_height_at(yarn, core_texel(yarn, chosen, hit.turns, hit.v));
+            let height = core_shown(yarn, hit, detail.fibers, core_chance(vec2u(pixel))).height;
             var key = Key(0u, 0u);
             if height >= -1.5 {
                 let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);

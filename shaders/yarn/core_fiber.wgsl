@@ -65,19 +65,23 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     return c;
 }
 
-// Which of the textures to look into: one of the two nearest, by chance.
+// Which of the textures to look into, and what to leave out there.
 struct CoreTexture {
+    // One of the two nearest, by chance.
     view: u32,
+    // The last one that holds all fibers that are not drawn one by one.
     layer: u32,
+    // Fibers of the layer that are not in the next one, and the share of them that is drawn one by one.
+    own_fibers: f32,
+    drawn_share: f32,
 }
 
 // Two numbers in [0, 1).
 struct CoreChance {
     view: f32,
-    layer: f32,
+    fiber: f32,
 }
 
-// The layers on either side of a level of detail hold a few fibers too many and too few: on the average those that are not drawn.
 fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -> CoreTexture {
     let last_view = f32(yarn.core_views - 1u);
     // Layer l holds the fibers from the share (l / layers)^2 on.
@@ -85,10 +89,12 @@ fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -
     let layer = min(floor(sqrt(fibers) * layers), layers - 1.0);
     let begin = layer * layer;
     let end = (layer + 1.0) * (layer + 1.0);
-    let share = (fibers * layers * layers - begin) / (end - begin);
+    let all = layers * layers;
     return CoreTexture(
         u32(clamp(floor(depth_share * last_view + chance.view), 0.0, last_view)),
-        u32(min(floor(layer + share + chance.layer), layers - 1.0)),
+        u32(layer),
+        (end - begin) / all * f32(yarn.fibers),
+        (fibers * all - begin) / (end - begin),
     );
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec4};
 use lisle_core::scattering::{Material, ScatteringTables, highlight_scale};
 use lisle_core::yarn::{FiberTable, Variate, Yarn};
-use lisle_precompute::{Tables, Transport, TransportStore};
+use lisle_precompute::{CoreFiber, Tables, Transport, TransportStore};
 
 use crate::{Object, Scene, layout};
 
@@ -68,8 +68,7 @@ impl YarnTables {
         let core_table = words.append_words(core.texels.iter().flat_map(|[height, offset, dh, dv]| {
             [pack_snorm([0.5 * height, *offset]), pack_snorm([dh / core_slope, dv / core_slope])]
         }));
-        let core_heights = words
-            .append_words(core.texels.chunks(2).map(|two| pack_snorm([0, two.len() - 1].map(|i| 0.5 * two[i][0]))));
+        let core_heights = words.append_words(packed_heights(core, yarn.fibers_per_ply));
         let shadow_table = words.append(tables.self_shadow.optical_depth.iter().copied());
         let extinction_table = words.append(tables.self_shadow.extinction.iter().copied());
         let seen_sky_table = words.append(tables.self_shadow.seen_sky.iter().copied());
@@ -135,6 +134,30 @@ impl YarnTables {
         words.0.shrink_to_fit();
         Self { words, kind }
     }
+}
+
+/// Bits of a fiber's place beside a core texture's height: PLACE_BITS of shaders/passes/core_line.wgsl.
+const PLACE_BITS: u32 = 5;
+
+/// A core texture's height with the place of its fiber among those of its layer that are not in the next one, 16 bits.
+fn pack_height(height: f32, place: f64) -> u32 {
+    let last = |bits: u32| f64::from((1_u32 << bits) - 1);
+    let height = (f64::from(0.25 * height + 0.5).clamp(0.0, 1.0) * last(16 - PLACE_BITS)).round();
+    // The last one is for fibers of the next layer.
+    let last_place = last(PLACE_BITS);
+    let place = if place < 1.0 { (place * last_place).round().min(last_place - 1.0) } else { last_place };
+    (height as u32) << PLACE_BITS | place as u32
+}
+
+/// Heights and places, two to a word.
+fn packed_heights(core: &CoreFiber, fibers: u32) -> impl Iterator<Item = u32> {
+    let (of_layer, layers) = (core.length * core.width, core.layers as f64);
+    let packed = move |texel: usize| {
+        let layer = (texel / of_layer % core.layers) as f64;
+        let rank = f64::from(core.ranks[texel]) / f64::from(fibers);
+        pack_height(core.texels[texel][0], (rank * layers * layers - layer * layer) / (2.0 * layer + 1.0))
+    };
+    (0..core.texels.len()).step_by(2).map(move |texel| packed(texel) | packed(texel + 1) << 16)
 }
 
 /// One buffer of tables and the offsets into it.
@@ -365,19 +388,28 @@ mod tests {
     }
 
     #[test]
-    fn heights_are_those_of_the_core_texture() {
+    fn heights_and_places_are_those_of_the_core_texture() {
         let mut buffer = TableBuffer::default();
-        for name in ["cotton-1", "silk-2"] {
-            let yarn = Yarn::preset(name).expect("preset");
-            buffer.add_yarn(&YarnTables::new(&yarn, &Tables::new(&yarn)));
+        let yarns = ["cotton-1", "silk-2"].map(|name| Yarn::preset(name).expect("preset"));
+        let tables = yarns.each_ref().map(Tables::new);
+        for (yarn, tables) in yarns.iter().zip(&tables) {
+            buffer.add_yarn(&YarnTables::new(yarn, tables));
         }
-        for kind in &buffer.yarns {
+        for ((kind, tables), yarn) in buffer.yarns.iter().zip(&tables).zip(&yarns) {
+            let core = &tables.core_fiber;
             let words = &buffer.words.0;
-            let count = kind.core_views * kind.core_layers * kind.core_length * kind.core_width;
-            let height = |texel: u32| words[(kind.core_heights + texel / 2) as usize] >> (16 * (texel & 1)) & 0xffff;
-            let texture = |texel: u32| words[(kind.core_table + 2 * texel) as usize] & 0xffff;
-            assert!((0..count).all(|texel| height(texel) == texture(texel)));
-            assert!((1..count).any(|texel| texture(texel) != texture(0)));
+            let stored = |texel: usize| words[kind.core_heights as usize + texel / 2] >> (16 * (texel & 1)) & 0xffff;
+            let height = |texel: usize| f64::from(stored(texel) >> PLACE_BITS) / 2047.0 * 4.0 - 2.0;
+            assert!((0..core.texels.len()).all(|k| (height(k) - f64::from(core.texels[k][0])).abs() < 0.001));
+            assert!((0..core.texels.len()).any(|k| (height(k) - f64::from(core.texels[0][0])).abs() > 0.1));
+            // Layer 2 has the fibers from 4/36 on, layer 3 those from 9/36.
+            let of_layer = core.length * core.width;
+            for k in 2 * of_layer..3 * of_layer {
+                let rank = f64::from(core.ranks[k]);
+                let share = (rank / f64::from(yarn.fibers_per_ply) - 4.0 / 36.0) / (5.0 / 36.0);
+                let place = f64::from(stored(k) & 31) / 31.0;
+                assert!((share < 1.0 && (place - share).abs() <= 1.0 / 31.0) || (share >= 1.0 && place == 1.0));
+            }
         }
     }
 }

@@ -9,6 +9,9 @@ use crate::profile::astray_share;
 /// Height that marks a texel where no fiber is seen.
 pub const HOLE: f32 = -2.0;
 
+/// Rank of no fiber.
+pub const NO_RANK: u16 = u16::MAX;
+
 /// Turns of the bundle along the ply that a texture shows.
 pub const TURNS: usize = 4;
 
@@ -45,7 +48,18 @@ pub struct CoreFiber {
     /// `[view][layer][u][v]`: height h of the visible surface ([`HOLE`] where there is none), offset across the fiber in [−1, 1] (towards +v),
     /// and dh/dθ, dv/dθ of the visible fiber's centre line, θ the bundle's angle in radians.
     pub texels: Vec<[f32; 4]>,
+    /// Rank of the visible fiber, in the same order; [`NO_RANK`] where there is none.
+    pub ranks: Vec<u16>,
 }
+
+/// A texel as it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Texel {
+    values: [f32; 4],
+    rank: u16,
+}
+
+const NOTHING: Texel = Texel { values: [HOLE, 0.0, 0.0, 0.0], rank: NO_RANK };
 
 /// A fiber as one view of the normalised section sees it.
 #[derive(Clone, Copy, Debug)]
@@ -133,20 +147,22 @@ impl CoreFiber {
         // Innermost layer first: each next one adds fibers to a copy of the last.
         let row = |view: usize, k: usize| {
             let u = (k as f64 + 0.5) * TURNS as f64 / LENGTH as f64;
-            let mut texels = [[HOLE, 0.0, 0.0, 0.0]; WIDTH];
+            let mut texels = [NOTHING; WIDTH];
             let mut layers = vec![texels; LAYERS];
             for layer in (0..LAYERS).rev() {
                 let end = if layer + 1 == LAYERS { count } else { first_rank(layer + 1) };
-                for fiber in order[first_rank(layer)..end].iter().copied().filter(|fiber| staying[*fiber]) {
-                    draw(&center(yarn, table, fiber, u), &footprints[view], half_width, &mut texels);
+                for rank in (first_rank(layer)..end).filter(|rank| staying[order[*rank]]) {
+                    let at = center(yarn, table, order[rank], u);
+                    draw(&at, rank as u16, &footprints[view], half_width, &mut texels);
                 }
                 layers[layer] = texels;
             }
             layers
         };
         let rows: Vec<_> = (0..VIEWS * LENGTH).into_par_iter().map(|k| row(k / LENGTH, k % LENGTH)).collect();
-        let of_view = |rows: &[Vec<[[f32; 4]; WIDTH]>]| -> Vec<[f32; 4]> {
-            (0..LAYERS).flat_map(|layer| rows.iter().flat_map(move |row| row[layer])).collect()
+        let texels = || {
+            let of_view = |rows| (0..LAYERS).flat_map(move |layer| in_layer(rows, layer));
+            rows.chunks(LENGTH).flat_map(of_view)
         };
         Self {
             views: VIEWS,
@@ -155,13 +171,19 @@ impl CoreFiber {
             length: LENGTH,
             width: WIDTH,
             half_width: half_width as f32,
-            texels: rows.chunks(LENGTH).flat_map(of_view).collect(),
+            texels: texels().map(|texel| texel.values).collect(),
+            ranks: texels().map(|texel| texel.rank).collect(),
         }
     }
 }
 
+/// One layer's texels of a view's rows.
+fn in_layer(rows: &[Vec<[Texel; WIDTH]>], layer: usize) -> impl Iterator<Item = Texel> {
+    rows.iter().flat_map(move |row| row[layer])
+}
+
 /// Draws one fiber into a row, nearest to the viewer wins.
-fn draw(at: &Center, footprint: &Footprint, half_width: f64, row: &mut [[f32; 4]; WIDTH]) {
+fn draw(at: &Center, rank: u16, footprint: &Footprint, half_width: f64, row: &mut [Texel; WIDTH]) {
     let span = footprint.half_span(at);
     let texel_width = 2.0 * half_width / WIDTH as f64;
     let column = |v: f64| ((v + half_width) / texel_width - 0.5).clamp(0.0, WIDTH as f64);
@@ -169,8 +191,8 @@ fn draw(at: &Center, footprint: &Footprint, half_width: f64, row: &mut [[f32; 4]
     for (k, texel) in columns.clone().zip(&mut row[columns]) {
         let offset = ((k as f64 + 0.5) * texel_width - half_width - at.v) / span;
         let height = (at.h + footprint.depth * (1.0 - offset * offset).max(0.0).sqrt()) as f32;
-        if offset.abs() <= 1.0 && height > texel[0] {
-            *texel = [height, offset as f32, at.dh as f32, at.dv as f32];
+        if offset.abs() <= 1.0 && height > texel.values[0] {
+            *texel = Texel { values: [height, offset as f32, at.dh as f32, at.dv as f32], rank };
         }
     }
 }
@@ -220,16 +242,20 @@ mod tests {
             let u = (k as f64 + 0.5) * TURNS as f64 / LENGTH as f64;
             let v = ((j as f64 + 0.5) / WIDTH as f64 * 2.0 - 1.0) * f64::from(texture.half_width);
             let mut expected = [f64::from(HOLE), 0.0, 0.0, 0.0];
+            let mut expected_rank = NO_RANK;
             let ranks = first_rank(layer, table.radius.len())..table.radius.len();
-            for fiber in order[ranks].iter().copied().filter(|fiber| staying[*fiber]) {
-                let at = center(&yarn, &table, fiber, u);
+            for rank in ranks.filter(|rank| staying[order[*rank]]) {
+                let at = center(&yarn, &table, order[rank], u);
                 let offset = (v - at.v) / footprint.half_span(&at);
                 let height = at.h + footprint.depth * (1.0 - offset * offset).max(0.0).sqrt();
                 if offset.abs() <= 1.0 && height > expected[0] {
                     expected = [height, offset, at.dh, at.dv];
+                    expected_rank = rank as u16;
                 }
             }
-            let texel = texture.texels[((view * LAYERS + layer) * LENGTH + k) * WIDTH + j];
+            let index = ((view * LAYERS + layer) * LENGTH + k) * WIDTH + j;
+            let texel = texture.texels[index];
+            assert_eq!(texture.ranks[index], expected_rank);
             assert!((0..4).all(|c| (f64::from(texel[c]) - expected[c]).abs() < 1e-4), "{texel:?} for {expected:?}");
         }
     }
