@@ -20,12 +20,19 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     let p = yarn_point(s, t);
     let c = core_point(yarn, s, p, ply, frame.viewer);
     let offset = c.toward * surface.height + c.across * hit.v;
+    // The fiber's axis turns with the ply, not its surface: that lies before it, and to a side.
+    let radius = yarn.fiber_radius * p.radius;
+    let bulge = radius * sqrt(max(1.0 - surface.offset * surface.offset, 0.0));
+    let below = offset - c.toward * (bulge / length(c.toward));
+    let axis = below - c.across * (surface.offset * radius / c.half_width);
     let winding = (c.toward * slopes.x + c.across * slopes.y) * c.fiber_rate;
-    let turning = c.ply.radial_rate * dot(offset, c.ply.radial) + c.ply.tangential_rate * dot(offset, c.ply.tangential);
+    let turning = c.ply.radial_rate * dot(axis, c.ply.radial) + c.ply.tangential_rate * dot(axis, c.ply.tangential);
     let tangent = normalize(c.velocity + turning + winding);
     let view = direction_to_viewer(frame.viewer, c.center);
     let normal = fiber_normal(tangent, c.side, view, surface.offset);
-    let position = c.center + c.side * dot(offset, c.side) + view * core_nearness(c, offset, view);
+    // Where the view ray meets the fiber's surface, as in resolve_fibers.wgsl.
+    let nearer = core_nearness(c, below, view) + bulge * min(1.0 / max(length(cross(tangent, view)), 1e-6), MOST_LEAN);
+    let position = c.center + c.side * dot(offset, c.side) + view * nearer;
     return Surface(Tube(p.position, p.radius, p.tangent), c.ply.radial, c.ply.tangential, position, tangent, normal, parts.segment, t);
 }
 

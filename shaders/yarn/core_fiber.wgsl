@@ -18,7 +18,7 @@ struct CorePoint {
     facing_squared: f32,
     // u, continuous along a segment but for jumps by whole turns.
     turns: f32,
-    // How deep the ply is in this view, from 0 (its short half axis) to 1 (its long one).
+    // Squared sine of psi: how deep the ply is in this view, from 0 (its short half axis) to 1 (its long one).
     depth_share: f32,
     ply: PlyPoint,
     fiber_rate: f32,
@@ -50,7 +50,9 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     c.side = (c.ply.tangential * in_section.x - c.ply.radial * in_section.y) / section_length;
     c.half_width = dot(c.across, c.side);
     c.facing_squared = max(section_length * section_length, LEAST_FACING_SQUARED);
-    let start = ply_seed(s.seed, ply).angle_turns;
+    // Where the bundle turns with the view, a short yarn shows little more than the turn that it begins in: that is the ply's own.
+    let seed = ply_seed(s.seed, ply);
+    let start = seed.angle_turns + floor(seed.migration_turns * f32(yarn.core_turns));
     let psi = atan2(seen_from.y, seen_from.x) / TAU;
     var ply_turns = 0.0;
     if yarn.plies > 1u {
@@ -59,8 +61,7 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     let from_normal = atan2(dot(view, p.binormal), dot(view, p.normal)) / TAU - ply_turns;
     let whole = round(from_normal - psi);
     c.turns = yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y) + start - psi - whole;
-    let flatness = yarn.ellipse_long - yarn.ellipse_short;
-    c.depth_share = clamp((length(seen_from * axes) - yarn.ellipse_short) / max(flatness, 1e-6), 0.0, 1.0);
+    c.depth_share = min(seen_from.y * seen_from.y, 1.0);
     c.fiber_rate = TAU * yarn.fiber_sign * p.length_rate * s.turns.y;
     return c;
 }

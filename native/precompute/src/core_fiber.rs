@@ -30,10 +30,13 @@ const WIDTH: usize = 128;
 ///
 /// Centre lines turn rigidly in that section, whatever the view; a round fiber does not. Seen from the section direction whose normalised form
 /// is (cos ψ, sin ψ), the ellipse is T = √(e_N² cos²ψ + e_B² sin²ψ) deep and e_N e_B / T wide (half each), by which the fiber's radius is divided along h and v.
-/// There is a texture for each of several T. The skew between h and v shifts heights within a fiber by less than its radius, and is left out.
+/// There is a texture for each of several ψ. The skew between h and v shifts heights within a fiber by less than its radius, and is left out.
+///
+/// How long a section cuts a fiber hangs on its slope across the view, which is that of its turning about its ply and of the ply's about the yarn. The short
+/// axis of a ply points at the yarn's centre, so that ψ tells where about the yarn a ply is that is seen: in front for ψ = 0, at the edge for ψ = 90°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoreFiber {
-    /// View k is for T = e_N + (e_B − e_N) k / (views − 1).
+    /// View k is for sin²ψ = k / (views − 1), from in front of the short axis to in front of the long one.
     pub views: usize,
     /// Layer l shows the fibers of rank ≥ m (l / layers)² in the order of [`FiberTable::drawing_order`], the outermost first. Those astray are left out.
     pub layers: usize,
@@ -69,24 +72,37 @@ struct Footprint {
     width: f64,
     /// dv/dθ that crosses the ply at 45°.
     steepness: f64,
+    /// What the ply's turning adds to dv/dθ: at h = 0, and for each h.
+    carried: [f64; 2],
 }
 
 impl Footprint {
     fn new(yarn: &Yarn, view: usize) -> Self {
-        let share = view as f64 / (VIEWS - 1) as f64;
-        let half_depth = yarn.ellipse_short + (yarn.ellipse_long - yarn.ellipse_short) * share;
+        let (sin, cos) = section_angle(view).sin_cos();
+        let half_depth = (yarn.ellipse_short * cos).hypot(yarn.ellipse_long * sin);
         let half_width = yarn.ellipse_short * yarn.ellipse_long / half_depth;
+        // A point of the yarn's section that is d nearer to the viewer than its centre is carried across by d times the ply's angle: d is the
+        // ply centre's distance times the cosine of its angle to the view, e_N cos ψ / T, and T h.
+        let plies_per_fiber = if yarn.plies > 1 { yarn.fiber_twist / yarn.ply_twist } else { 0.0 };
+        let nearer = yarn.ply_distance() * yarn.ellipse_short * cos / half_depth;
         Self {
             depth: yarn.fiber_radius / half_depth,
             width: yarn.fiber_radius / half_width,
             steepness: yarn.fiber_twist.abs() / (TAU * half_width),
+            carried: [nearer, half_depth].map(|d| plies_per_fiber * d / half_width),
         }
     }
 
-    /// Half of what a fiber covers of a row: a fiber that crosses the ply at a slant is cut longer than it is wide.
+    /// Half of what a fiber covers of a row: a fiber that crosses the view at a slant is cut longer than it is wide.
     fn half_span(&self, at: &Center) -> f64 {
-        self.width * (at.dv / self.steepness).hypot(1.0)
+        let across = at.dv + self.carried[0] + self.carried[1] * at.h;
+        self.width * (across / self.steepness).hypot(1.0)
     }
+}
+
+/// ψ of a view, radians.
+fn section_angle(view: usize) -> f64 {
+    (view as f64 / (VIEWS - 1) as f64).sqrt().asin()
 }
 
 /// Which fibers of a ply the textures show: flyaways are drawn one by one while they are outside of the ply, so that only as many of
@@ -275,31 +291,32 @@ mod tests {
         }
     }
 
-    /// Share of [−half_width, half_width] that round tubes cover in the table's own section, seen from a direction that one view
-    /// stands for, over random places along the ply. The fibers turn and migrate as the textures have it.
+    /// Share of [−half_width, half_width] about a ply's centre that round tubes cover in the yarn's own section, over random places along the yarn where the
+    /// ply is seen from a direction that one view stands for. Fibers turn about their ply and migrate as the textures have it, and the ply about the yarn.
     fn explicit_coverage(yarn: &Yarn, table: &FiberTable, view: usize, half_width: f64) -> f64 {
         const RAYS: u32 = 20_000;
-        let (a, b) = (yarn.ellipse_short, yarn.ellipse_long);
-        let depth = a + (b - a) * view as f64 / (VIEWS - 1) as f64;
-        // cos²ψ from T² = a² cos²ψ + b² sin²ψ.
-        let cos = if b > a { ((b * b - depth * depth) / (b * b - a * a)).max(0.0).sqrt() } else { 1.0 };
-        let psi = (1.0 - cos * cos).max(0.0).sqrt().atan2(cos);
-        let side = DVec2::new(-b * psi.sin(), a * psi.cos()).normalize();
+        let axes = DVec2::new(yarn.ellipse_short, yarn.ellipse_long);
+        let psi = section_angle(view);
+        // Towards the viewer, in the ply's section.
+        let toward = (DVec2::from_angle(psi) * axes).normalize();
+        let half = axes.x * axes.y / (DVec2::from_angle(psi) * axes).length();
         let length_of_turn = yarn.fiber_twist.abs();
         let reach = 2.0 * yarn.fiber_radius / length_of_turn;
+        let ply_angle = if yarn.plies > 1 { TAU * yarn.fiber_twist / yarn.ply_twist } else { 0.0 };
+        let center_of_ply = DVec2::new(yarn.ply_distance(), 0.0);
         let mut random = Random::new(9);
         let staying = staying(yarn, table);
         let covered = (0..RAYS).filter(|_| {
             let (u, v) = (TURNS as f64 * random.unit(), (2.0 * random.unit() - 1.0) * half_width);
-            let across = v * a * b / depth;
             (0..table.radius.len()).filter(|fiber| staying[*fiber]).any(|fiber| {
                 (-20..=20).any(|k| {
                     let along = f64::from(k) / 20.0 * reach;
                     let at = center(yarn, table, fiber, u + along);
                     // From (h, v) of the view to the section's own axes: the bundle is turned by ψ.
-                    let normalised = DVec2::from_angle(psi).rotate(DVec2::new(at.h, at.v));
-                    let real = normalised * DVec2::new(a, b);
-                    (along * length_of_turn).hypot(real.dot(side) - across) < yarn.fiber_radius
+                    let in_ply = DVec2::from_angle(psi).rotate(DVec2::new(at.h, at.v)) * axes;
+                    let turned = DVec2::from_angle(ply_angle * along).rotate(center_of_ply + in_ply);
+                    let across = toward.perp_dot(turned - center_of_ply) - v * half;
+                    (along * length_of_turn).hypot(across) < yarn.fiber_radius
                 })
             })
         });
