@@ -23,8 +23,10 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     // The fiber's axis turns with the ply, not its surface: that lies before it, and to a side.
     let radius = yarn.fiber_radius * p.radius;
     let bulge = radius * sqrt(max(1.0 - surface.offset * surface.offset, 0.0));
-    let below = offset - c.toward * (bulge / length(c.toward));
-    let axis = below - c.across * (surface.offset * radius / c.half_width);
+    // No ply is thinner than a fiber, but where points repeat it may have no section at all.
+    let thinnest = max(radius, 1e-20);
+    let below = offset - c.toward * (bulge / max(length(c.toward), thinnest));
+    let axis = below - c.across * (surface.offset * radius / max(c.half_width, thinnest));
     let winding = (c.toward * slopes.x + c.across * slopes.y) * c.fiber_rate;
     let turning = c.ply.radial_rate * dot(axis, c.ply.radial) + c.ply.tangential_rate * dot(axis, c.ply.tangential);
     let tangent = normalize(c.velocity + turning + winding);

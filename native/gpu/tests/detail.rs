@@ -5,8 +5,9 @@ mod support;
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
-use lisle_core::Yarns;
+use lisle_core::scattering::Material;
 use lisle_core::yarn::PRESET_NAMES;
+use lisle_core::{Curves, Yarns};
 use lisle_gpu::{Camera, Image, Light, Scene, Settings};
 use support::{
     curves, draw, exact, looking, measure, object, orthographic, perspective, picture, preset, scene, sun, yarns_of,
@@ -199,6 +200,59 @@ fn the_colours_of_a_ply_under_a_little_more_light_are_told_apart() {
     let of = |irradiance| ply("cotton-1", 1.0, sun([0.2, 1.0, -0.3], irradiance), 1, 0);
     let error = color_error(&of(3.3), &of(3.0));
     assert!(error > GOALS[1].1 && error < 0.1, "{error}");
+}
+
+/// Straight yarns of all their plies, one after the other on one line, without flyaways: five of them, since each shows its fibers at angles of its own.
+fn plies(name: &str, material: &str, lod_pixels: f32, radius_pixels: u32, samples: u32) -> Image {
+    const YARNS: u32 = 5;
+    const LENGTH: f64 = 80.0;
+    let size = [radius_pixels * YARNS * (LENGTH as u32 + 2), 3 * radius_pixels];
+    let piece = |k: u32| {
+        let (from, across) =
+            ((f64::from(k) - 2.5) * (LENGTH + 2.0) + 1.0, f64::from(k) / f64::from(YARNS * radius_pixels));
+        (0..161).map(|i| [(from + LENGTH * f64::from(i) / 160.0) as f32, 0.0, across as f32]).collect()
+    };
+    let curves = Curves::catmull_rom((0..YARNS).map(piece).collect(), false);
+    let yarns = Arc::new(Yarns::new(curves, Some(1.0)).expect("valid"));
+    let mut object = object(&yarns, &support::without_flyaways(preset(name)));
+    object.material = Arc::new(Material { diffuse_weight: 0.0, ..Material::preset(material).expect("preset") });
+    let camera = orthographic(looking(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO), 3.0, size, [0.0, 0.0]);
+    let mut scene = scene(vec![object], camera);
+    scene.ambient = glam::Vec3::ZERO;
+    scene.lights = vec![sun([0.0, 1.0, -1.0], 3.0)];
+    draw(&scene, &Settings { samples, filter_width: 1.5, lod_pixels, ..exact(size) })
+}
+
+/// Mean square of how far fibers run across the yarn, where one is seen.
+fn steepness(image: &Image) -> f64 {
+    let seen = image.tangent.iter().filter(|tangent| **tangent != [0.0; 3]);
+    let (sum, count) = seen.fold((0.0, 0.0), |(sum, count), t| (sum + f64::from(t[2] * t[2]), count + 1.0));
+    sum / count
+}
+
+/// Narrow highlights show nothing but how many fibers have the one direction that they need.
+#[test]
+fn fibers_of_a_core_have_their_directions() {
+    for name in ["cotton-1", "silk-1", "rayon-3"] {
+        let [full, merged] = [0.0, 100.0].map(|lod_pixels| steepness(&plies(name, "cotton", lod_pixels, 12, 1)));
+        let error = merged / full - 1.0;
+        println!("{name}: steepness {full:.5}, of the core {:+.2} %", 100.0 * error);
+        assert!(error.abs() < 0.05, "{name}: {error}");
+        assert!((1.1 * merged / full - 1.0).abs() > 0.05, "{name}: a tenth more passes too");
+    }
+}
+
+/// Some fibers drawn one by one, the others in the core, highlights a degree wide.
+#[test]
+fn yarns_of_several_plies_keep_their_colour_among_levels_of_detail() {
+    for (name, goal) in [("cotton-1", 0.03), ("cotton-2", 0.03), ("silk-1", 0.03)] {
+        for material in ["cotton", "fleece"] {
+            let [full, merged] = [0.0, 1.0].map(|lod_pixels| plies(name, material, lod_pixels, 4, 64));
+            let error = measure::brightness(&merged) / measure::brightness(&full) - 1.0;
+            println!("{name}, {material}: {:+.2} %", 100.0 * error);
+            assert!(error.abs() < goal, "{name}, {material}: {error}");
+        }
+    }
 }
 
 #[test]
