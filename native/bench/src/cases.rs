@@ -41,6 +41,7 @@ pub fn measure_views(
     let worst = worst(renderer, yarns, &views, steps)?;
     let mut rows = Vec::new();
     for (view, camera) in [("close", views.close()), ("worst", worst), ("full", views.full())] {
+        let mut once_s = None;
         for (shading, photons, name) in SHADINGS {
             let settings = Settings { transport_photons: photons, ..scene::settings(shading, options.samples) };
             let figures = measure::picture(renderer, &scene::lit(yarns, camera), &settings)?;
@@ -56,6 +57,16 @@ pub fn measure_views(
                     tenths(figures.noise.others)
                 ),
             });
+            match name {
+                "physical" => once_s = Some(figures.wall_s),
+                "multiple" => findings.extend(once_s.map(|once_s| Finding {
+                    case: format!("{model}, {view}"),
+                    figure: Figure::MultipleByOnce,
+                    value: figures.wall_s / once_s,
+                    remark: format!("{} s by {} s", seconds(figures.wall_s), seconds(once_s)),
+                })),
+                _ => {}
+            }
             rows.push(Row { model: model.into(), view, shading: name, figures });
         }
     }

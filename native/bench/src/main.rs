@@ -1,10 +1,11 @@
 //! The benchmark: every yarn file at hand and a garment of 2 M control points, close, worst and full view, all shading models; ten million
-//! fiber segments; one frame of an animation. It prints Markdown, with the targets beside the figures, and never fails on timing.
+//! fiber segments; the tables of multiple scattering; one frame of an animation. It prints Markdown, with the targets beside the figures, and never fails on timing.
 
 mod animation;
 mod cases;
 mod measure;
 mod models;
+mod multiple;
 mod options;
 mod raster;
 mod scene;
@@ -59,6 +60,10 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     if options.wants(raster::NAME) {
         eprintln!("{}", raster::NAME);
         println!("## {}\n\n{}", raster::TITLE, raster::measure(&renderer, options, &mut findings)?);
+    }
+    if options.wants(multiple::NAME) {
+        eprintln!("{}", multiple::NAME);
+        println!("## {}\n\n{}", multiple::TITLE, multiple::measure(options, &mut findings));
     }
     if let Some(yarns) = &animated {
         eprintln!("{}", animation::NAME);
