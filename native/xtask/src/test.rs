@@ -64,7 +64,7 @@ fn closing(what: &str, command: &mut Command) -> Result<Vec<String>, Failure> {
             && !plain.contains("short test summary")
             && !plain.starts_with("test result: ok. 0 passed; 0 failed; 0 ignored")
     };
-    let closing: Vec<String> = lines.iter().filter(is_closing).cloned().collect();
+    let mut closing: Vec<String> = lines.iter().filter(is_closing).cloned().collect();
     if !succeeded {
         let said = if closing.is_empty() { lines.last().cloned().unwrap_or_default() } else { closing.join("\n") };
         return Err(Failure::new(what, said));
@@ -72,7 +72,19 @@ fn closing(what: &str, command: &mut Command) -> Result<Vec<String>, Failure> {
     if closing.is_empty() {
         return Err(Failure::new(what, "it ended without a closing line: no test ran"));
     }
+    closing.extend(skipped(&lines));
     Ok(closing)
+}
+
+/// What tests said that they left out, each once.
+fn skipped(lines: &[String]) -> Vec<String> {
+    let mut said: Vec<String> = Vec::new();
+    for line in lines.iter().filter_map(|line| line.find("skipped: ").map(|at| &line[at..])) {
+        if !said.iter().any(|known| known == line) {
+            said.push(line.to_owned());
+        }
+    }
+    said
 }
 
 /// Runs a tool of which the exit code says it all.
@@ -159,4 +171,17 @@ fn pytest(python: &mut Command, folder: &str) -> Result<Vec<String>, Failure> {
         &format!("pytest {folder}"),
         python.args(["-m", "pytest", "-p", "no:cacheprovider"]).arg(root().join(folder)),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_left_out_is_told_once() {
+        let lines =
+            ["test a ... skipped: no data (a)", "test b ... ok", "skipped: no data (a)", "skipped: no data (b)"];
+        let lines = lines.map(str::to_owned);
+        assert_eq!(skipped(&lines), ["skipped: no data (a)", "skipped: no data (b)"]);
+    }
 }
