@@ -73,6 +73,8 @@ class Result:
     """Mean colour with levels of detail against that with every fiber, by the renderer alone."""
     every_fiber: float
     """Mean error of single scattering with every fiber drawn."""
+    fine_tables: float
+    """The same with tables of self-shadow and occlusion four times as fine."""
     fine_shadows: float | None
     """The same with a shadow map four times as fine; none under a sky or where nothing casts shadows on another."""
     table_occlusion: float | None
@@ -140,6 +142,7 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
         alpha / float(single["alpha"].mean(dtype=np.float64)) - 1,
         measures.mean_error(colour(rendered[0]), full),
         measures.mean_error(full, expected),
+        error(table_resolution=4),
         error(shadow_resolution=8192) if shadowed else None,
         error(occlusion="table") if case.light == "sky" else None,
     )

@@ -24,6 +24,7 @@ COLUMNS = (
     "coverage %",
     "detail %",
     "every fiber %",
+    "fine tables %",
     "fine shadows %",
     "table occlusion %",
     "multiple: mean %",
@@ -63,7 +64,8 @@ def _measures(pair: Pair) -> list[str]:
 
 def row(result: Result) -> Row:
     """Of `COLUMNS`."""
-    ablations = (result.coverage, result.detail, result.every_fiber, result.fine_shadows, result.table_occlusion)
+    ablations = (result.coverage, result.detail, result.every_fiber, result.fine_tables)
+    ablations += (result.fine_shadows, result.table_occlusion)
     return [str(result.case), *_measures(result.single), *map(percent, ablations), *_measures(result.multiple)]
 
 

@@ -102,6 +102,7 @@ def test_settings_change_the_picture(draw):
         dict(seed=7),
         dict(filter_width=0.0),
         dict(shadow_resolution=64),
+        dict(table_resolution=2),
         dict(samples=3),
     ):
         assert not np.array_equal(draw(**{"samples": 2, **change})["combined"], plain), change
@@ -179,6 +180,8 @@ def test_statistics(draw, swatch):
         (dict(lod_pixels=-1.0), "lod_pixels"),
         (dict(filter_width=math.nan), "filter_width"),
         (dict(shadow_resolution=8), "shadow_resolution"),
+        (dict(table_resolution=0), "table_resolution"),
+        (dict(table_resolution=5), "table_resolution"),
         (dict(region=(0, 0, 0, 10)), "region"),
         (dict(region=(0, 0, WIDTH + 1, 10)), "region"),
         (dict(region=(1, 2, 3)), "region"),

@@ -183,7 +183,7 @@ impl Case {
     fn new(yarn_name: &str, material_name: &str) -> Self {
         let yarn = Yarn::preset(yarn_name).expect(yarn_name);
         let material = Material::preset(material_name).expect(material_name);
-        let tables = Tables::new(&yarn);
+        let tables = Tables::new(&yarn, 1);
         let mut buffer = TableBuffer::default();
         // Something before it, so that the offsets count.
         buffer.words.0.resize(37, f32::NAN.to_bits());

@@ -196,7 +196,8 @@ impl Drawing {
             }
         };
         listener.check()?;
-        let (mut buffers, parts) = SceneBuffers::update(gpu, self.scene.take(), scene, &transports, tables)?;
+        let (mut buffers, parts) =
+            SceneBuffers::update(gpu, self.scene.take(), scene, &transports, settings.table_resolution, tables)?;
         let sky = SkyBuffers::update(gpu, self.sky.take(), scene.environment.as_ref())?;
         let meshes = MeshBuffers::update(gpu, self.meshes.take(), &exposure.steps)?;
         if mesh_pipelines.is_none() && !meshes.is_empty() {
@@ -285,6 +286,9 @@ fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
     }
     if !(16..=16384).contains(&settings.shadow_resolution) {
         return invalid("shadow_resolution", format!("{}: expected 16 to 16384 texels", settings.shadow_resolution));
+    }
+    if !(1..=4).contains(&settings.table_resolution) {
+        return invalid("table_resolution", format!("{}: expected 1 to 4", settings.table_resolution));
     }
     scene.validate()?;
     Ok(region)

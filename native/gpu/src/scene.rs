@@ -45,6 +45,8 @@ pub struct Settings {
     pub filter: Filter,
     /// Its width, pixels; 0 for a point sample at the centre of each pixel.
     pub filter_width: f32,
+    /// Times as many texels along each side of the tables of self-shadow and occlusion, 1 to 4: to tell what their own are to blame for.
+    pub table_resolution: u32,
     /// Texels along one side of a shadow map.
     pub shadow_resolution: u32,
     /// Seeds the sample sequence.
@@ -86,6 +88,7 @@ impl Default for Settings {
             transparent: true,
             filter: Filter::default(),
             filter_width: 1.5,
+            table_resolution: 1,
             shadow_resolution: 2048,
             seed: 0,
             first_sample: 0,

@@ -284,16 +284,19 @@ const LEAST_KEPT_PHOTONS: u32 = 50_000;
 /// Precomputed tables of recent yarns and materials, so that going back to one costs none of them.
 #[derive(Default)]
 pub(crate) struct TableCache {
-    yarns: Recent<Yarn, YarnTables>,
+    yarns: Recent<(Yarn, u32), YarnTables>,
     transports: Recent<TransportKey, Transport>,
     pub store: Option<TransportStore>,
 }
 
 impl TableCache {
-    pub fn yarn(&mut self, yarn: &Yarn) -> Arc<YarnTables> {
-        self.yarns
-            .find(yarn)
-            .unwrap_or_else(|| self.yarns.keep(yarn.clone(), YarnTables::new(yarn, &Tables::new(yarn))))
+    /// `resolution`: [`crate::Settings::table_resolution`].
+    pub fn yarn(&mut self, yarn: &Yarn, resolution: u32) -> Arc<YarnTables> {
+        let key = (yarn.clone(), resolution);
+        self.yarns.find(&key).unwrap_or_else(|| {
+            let tables = YarnTables::new(yarn, &Tables::new(yarn, resolution as usize));
+            self.yarns.keep(key, tables)
+        })
     }
 
     /// Keeps what was used last: as much as a scene of so many needs, and for whoever tries one after the other, or has several views, at least
@@ -391,7 +394,7 @@ mod tests {
     fn heights_and_places_are_those_of_the_core_texture() {
         let mut buffer = TableBuffer::default();
         let yarns = ["cotton-1", "silk-2"].map(|name| Yarn::preset(name).expect("preset"));
-        let tables = yarns.each_ref().map(Tables::new);
+        let tables = yarns.each_ref().map(|yarn| Tables::new(yarn, 1));
         for (yarn, tables) in yarns.iter().zip(&tables) {
             buffer.add_yarn(&YarnTables::new(yarn, tables));
         }

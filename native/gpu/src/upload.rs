@@ -70,6 +70,7 @@ pub(crate) fn same_rest(a: &Yarns, b: &Yarns) -> bool {
 pub(crate) struct SceneBuffers {
     uploads: Vec<Upload>,
     kinds: Vec<Arc<Yarn>>,
+    table_resolution: u32,
     materials: Vec<Arc<Material>>,
     transports: Vec<UploadedTransport>,
     pub shape: Shape,
@@ -185,6 +186,7 @@ impl SceneBuffers {
         previous: Option<Self>,
         scene: &Scene,
         transports: &[SceneTransport],
+        table_resolution: u32,
         cache: &mut TableCache,
     ) -> Result<(Self, Vec<ObjectParts>), Error> {
         let (mut kinds, mut materials) = (Vec::new(), Vec::new());
@@ -215,16 +217,17 @@ impl SceneBuffers {
         };
         let same_transports =
             buffers.transports.len() == wanted.len() && buffers.transports.iter().zip(&wanted).all(|(a, b)| same(a, b));
-        if buffers.kinds != kinds || buffers.materials != materials || !same_transports {
+        let same_tables = buffers.kinds == kinds && buffers.table_resolution == table_resolution;
+        if !same_tables || buffers.materials != materials || !same_transports {
             let mut tables = TableBuffer::default();
-            kinds.iter().for_each(|yarn| tables.add_yarn(&cache.yarn(yarn)));
+            kinds.iter().for_each(|yarn| tables.add_yarn(&cache.yarn(yarn, table_resolution)));
             materials.iter().for_each(|material| tables.add_material(material));
             wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
             buffers.transports = wanted;
             buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = storage(gpu, "materials", &tables.materials)?;
             buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words.0)?;
-            (buffers.kinds, buffers.materials) = (kinds, materials);
+            (buffers.kinds, buffers.materials, buffers.table_resolution) = (kinds, materials, table_resolution);
         }
         cache.forget(buffers.kinds.len(), transports.len());
         for part in &mut parts {
@@ -256,6 +259,7 @@ impl SceneBuffers {
         let buffers = Self {
             uploads,
             kinds: Vec::new(),
+            table_resolution: 0,
             materials: Vec::new(),
             transports: Vec::new(),
             shape: Shape {

@@ -317,7 +317,7 @@ fn a_spot_with_a_soft_edge_fades_within_its_cone() {
 
 /// Share of the light that goes through the blockers' yarn between its fibers.
 fn between_fibers() -> f64 {
-    f64::from(SelfShadow::new(&SectionDensity::new(&preset("cotton-2"))).through_circle)
+    f64::from(SelfShadow::new(&SectionDensity::new(&preset("cotton-2")), 1).through_circle)
 }
 
 /// What goes on straight behind yarns that light has to go so many of the shaded yarn's diameters through; three of them count.

@@ -97,17 +97,18 @@ fn fit_cubic(samples: &[(f64, f64)]) -> DVec4 {
 }
 
 impl Occlusion {
-    /// Averages over directions, then over angles.
-    pub fn new(density: &SectionDensity) -> Self {
+    /// Averages over directions, then over angles. `resolution`, ≥ 1: times as many texels along each side.
+    pub fn new(density: &SectionDensity, resolution: usize) -> Self {
         let slices = Slices::new(density);
-        let texel = 2.0 * EXTENT / SIZE as f64;
+        let size = resolution * SIZE;
+        let texel = 2.0 * EXTENT / size as f64;
         let center = |k: usize| (k as f64 + 0.5) * texel - EXTENT;
-        let visibility = (0..SIZE * SIZE)
+        let visibility = (0..size * size)
             .into_par_iter()
-            .map(|k| slices.visibility(DVec2::new(center(k % SIZE), center(k / SIZE))) as f32)
+            .map(|k| slices.visibility(DVec2::new(center(k % size), center(k / size))) as f32)
             .collect();
         let cubic = fit_cubic(&radial_average(&slices)).to_array().map(|c| c as f32);
-        Self { size: SIZE, extent: EXTENT as f32, visibility, cubic }
+        Self { size, extent: EXTENT as f32, visibility, cubic }
     }
 
     /// Bilinear lookup at a point of the section; the same as `self_occlusion` in `shaders/passes/lighting.wgsl`.
@@ -132,7 +133,7 @@ mod tests {
     fn visibility_grows_outwards_and_the_cubic_follows_it() {
         for name in PRESET_NAMES {
             let density = SectionDensity::new(&Yarn::preset(name).expect(name));
-            let table = Occlusion::new(&density);
+            let table = Occlusion::new(&density, 1);
             assert!(table.visibility.iter().all(|v| (0.0..=1.0).contains(v)), "{name}");
             let average = radial_average(&Slices::new(&density));
             let at = |rho: f64| average[(rho / EXTENT * f64::from(RINGS)).round() as usize].1;
@@ -160,7 +161,7 @@ mod tests {
     fn visibility_is_that_of_rays_through_explicit_fibers() {
         for name in ["cotton-1", "rayon-4", "silk-1"] {
             let yarn = Yarn::preset(name).expect(name);
-            let table = Occlusion::new(&SectionDensity::new(&yarn));
+            let table = Occlusion::new(&SectionDensity::new(&yarn), 1);
             let (dealer, mut random) = (Sections::new(&yarn), Random::new(11));
             let radius = yarn.fiber_radius / yarn.outer_radius();
             // Table, cubic and rays, by distance.

@@ -110,24 +110,25 @@ pub(crate) fn depth_slice(density: &SectionDensity, psi: f64, size: usize) -> Ve
 }
 
 impl SelfShadow {
-    /// Integrates the density along every slice.
-    pub fn new(density: &SectionDensity) -> Self {
+    /// Integrates the density along every slice. `resolution`, ≥ 1: times as many texels along each side, and slices.
+    pub fn new(density: &SectionDensity, resolution: usize) -> Self {
+        let (slices, size) = (resolution * SLICES, resolution * SIZE);
         let sector = TAU / f64::from(density.plies);
-        let optical_depth = (0..SLICES)
+        let optical_depth = (0..slices)
             .into_par_iter()
-            .flat_map_iter(|k| depth_slice(density, sector * k as f64 / SLICES as f64, SIZE))
+            .flat_map_iter(|k| depth_slice(density, sector * k as f64 / slices as f64, size))
             .map(|depth| depth as f32)
             .collect();
         let optical_depth: Vec<f32> = optical_depth;
-        let texel = |k: usize| ((k as f64 + 0.5) / SIZE as f64 * 2.0 - 1.0) * EXTENT;
+        let texel = |k: usize| ((k as f64 + 0.5) / size as f64 * 2.0 - 1.0) * EXTENT;
         // The first texel of a row has all fibers between it and the light.
-        let rows = optical_depth.chunks_exact(SIZE).enumerate().filter(|(k, _)| texel(k % SIZE).abs() < 1.0);
+        let rows = optical_depth.chunks_exact(size).enumerate().filter(|(k, _)| texel(k % size).abs() < 1.0);
         let (through, count) = rows.fold((0.0, 0.0), |(sum, count), (_, row)| (sum + (-row[0]).exp(), count + 1.0));
         let extinction =
-            (0..SIZE * SIZE).map(|k| density.extinction(DVec2::new(texel(k % SIZE), texel(k / SIZE))) as f32).collect();
+            (0..size * size).map(|k| density.extinction(DVec2::new(texel(k % size), texel(k / size))) as f32).collect();
         Self {
-            slices: SLICES,
-            size: SIZE,
+            slices,
+            size,
             extent: EXTENT as f32,
             plies: density.plies,
             optical_depth,
@@ -251,7 +252,7 @@ mod tests {
         for name in PRESET_NAMES {
             let full = Yarn::preset(name).expect(name);
             for (kind, yarn) in [("bare", without_flyaways(&full)), ("with flyaways", full)] {
-                let table = SelfShadow::new(&SectionDensity::new(&yarn));
+                let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
                 let error = errors(&yarn, |psi, q| (-table.at(psi, q)).exp());
                 println!("{name} {kind}: bins within {:.4}, mean within {:.4}", error.0, error.1);
                 assert!(within_bounds(error), "{name} {kind}: {error:?}");
@@ -263,9 +264,9 @@ mod tests {
     fn wrong_optical_depths_are_rejected_by_the_same_rays() {
         let yarn = Yarn::preset("cotton-1").expect("preset");
         let density = SectionDensity::new(&yarn);
-        let table = SelfShadow::new(&density);
+        let table = SelfShadow::new(&density, 1);
         let skipped = 0.25 * PI * density.fiber_radius;
-        let bare = SelfShadow::new(&SectionDensity::new(&without_flyaways(&yarn)));
+        let bare = SelfShadow::new(&SectionDensity::new(&without_flyaways(&yarn)), 1);
         assert!(!within_bounds(errors(&yarn, |psi, q| (-0.8 * table.at(psi, q)).exp())), "too thin");
         assert!(!within_bounds(errors(&yarn, |psi, q| (-1.25 * table.at(psi, q)).exp())), "too thick");
         let from_q = |psi: f64, q: DVec2| (-table.at(psi, q - DVec2::from_angle(psi) * skipped)).exp();
@@ -378,7 +379,7 @@ mod tests {
         let mut worst_point = 0.0_f64;
         for name in PRESET_NAMES {
             let yarn = without_flyaways(&Yarn::preset(name).expect(name));
-            let table = SelfShadow::new(&SectionDensity::new(&yarn));
+            let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
             let found = over_width(&yarn, &WIDTH_DEG, 1500, |s| {
                 (-table.over_width_of_seen(s.psi_light, s.psi_view, s.q)).exp()
             });
@@ -408,7 +409,7 @@ mod tests {
         let mut worst_mean = 0.0_f64;
         for name in PRESET_NAMES {
             let yarn = without_flyaways(&Yarn::preset(name).expect(name));
-            let table = SelfShadow::new(&SectionDensity::new(&yarn));
+            let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
             let found = seen(&yarn, |s| (-table.toward_light_of_seen(s.psi_light, s.psi_view, s.q)).exp());
             for (angle, expected, predicted) in found {
                 println!(
@@ -428,7 +429,7 @@ mod tests {
         for name in PRESET_NAMES {
             let yarn = without_flyaways(&Yarn::preset(name).expect(name));
             let density = SectionDensity::new(&yarn);
-            let (table, occlusion) = (SelfShadow::new(&density), crate::Occlusion::new(&density));
+            let (table, occlusion) = (SelfShadow::new(&density, 1), crate::Occlusion::new(&density, 1));
             // Lights all around at even angles are the sky.
             let mean = |predict: &dyn Fn(&Seen) -> f64| {
                 let found = seen_from(&yarn, &SKY_DEG, 100, predict);
@@ -447,7 +448,7 @@ mod tests {
     fn lookups_stay_within_their_bound_between_slices_and_texels() {
         for name in PRESET_NAMES {
             let density = SectionDensity::new(&Yarn::preset(name).expect(name));
-            let table = SelfShadow::new(&density);
+            let table = SelfShadow::new(&density, 1);
             let mut random = Random::new(2);
             let (mut worst, mut square) = (0.0_f64, 0.0);
             const COUNT: u32 = 4000;
@@ -472,7 +473,7 @@ mod tests {
 
     #[test]
     fn slices_repeat_with_the_plies() {
-        let table = SelfShadow::new(&SectionDensity::new(&Yarn::preset("silk-1").expect("preset")));
+        let table = SelfShadow::new(&SectionDensity::new(&Yarn::preset("silk-1").expect("preset")), 1);
         let q = DVec2::new(0.2, -0.1);
         let turn = TAU / 3.0;
         let turned = DMat2::from_angle(turn) * q;

@@ -14,12 +14,13 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Tables of a yarn whose parameters are valid ([`Yarn::validate`]).
-    pub fn new(yarn: &Yarn) -> Self {
+    /// Tables of a yarn whose parameters are valid ([`Yarn::validate`]). `resolution`, ≥ 1: times as many texels along each side of those of
+    /// self-shadow and occlusion.
+    pub fn new(yarn: &Yarn, resolution: usize) -> Self {
         let density = SectionDensity::new(yarn);
         Self {
-            self_shadow: SelfShadow::new(&density),
-            occlusion: Occlusion::new(&density),
+            self_shadow: SelfShadow::new(&density, resolution),
+            occlusion: Occlusion::new(&density, resolution),
             core_fiber: CoreFiber::new(yarn, &FiberTable::new(yarn)),
         }
     }
@@ -37,17 +38,17 @@ mod tests {
         for name in PRESET_NAMES {
             let yarn = Yarn::preset(name).expect(name);
             let start = std::time::Instant::now();
-            let tables = Tables::new(&yarn);
+            let tables = Tables::new(&yarn, 1);
             let seconds = start.elapsed().as_secs_f64();
             println!("{name}: {seconds:.3} s");
-            assert_eq!(tables, Tables::new(&yarn), "{name}");
+            assert_eq!(tables, Tables::new(&yarn, 1), "{name}");
         }
     }
 
     #[test]
     fn extreme_yarns_give_finite_tables() {
         for yarn in extreme_yarns() {
-            let tables = Tables::new(&yarn);
+            let tables = Tables::new(&yarn, 1);
             assert!(tables.self_shadow.optical_depth.iter().all(|t| t.is_finite() && *t >= 0.0));
             assert!(tables.occlusion.visibility.iter().all(|v| (0.0..=1.0).contains(v)));
             assert!(tables.occlusion.cubic.iter().all(|c| c.is_finite()));

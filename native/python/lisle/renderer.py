@@ -64,6 +64,7 @@ class Renderer:
         filter_width: float = 1.5,
         noise_threshold: float = 0.0,
         time_limit_s: float | None = None,
+        table_resolution: int = 1,
         shadow_resolution: int = 2048,
         seed: int = 0,
         first_sample: int = 0,
@@ -104,6 +105,7 @@ class Renderer:
                 half the difference between the two halves of the samples, relative to the square root of the colour,
                 as root of the mean square over what shows anything; looked at after 16, 32, 64 … samples.
             time_limit_s: stops when so many seconds have passed. The picture then depends on the machine's speed.
+            table_resolution: times as many texels along each side of the tables of self-shadow and occlusion, 1 to 4.
             shadow_resolution: texels along one side of a shadow map, 16 to 16384.
             seed: of the sample sequence.
             first_sample: its number in that sequence: samples 0 to 7 and 8 to 15 are two halves of one picture of 16.
@@ -149,6 +151,7 @@ class Renderer:
                 "filter_width": filter_width,
                 "noise_threshold": noise_threshold,
                 "time_limit_s": time_limit_s,
+                "table_resolution": table_resolution,
                 "shadow_resolution": shadow_resolution,
                 "seed": seed,
                 "first_sample": first_sample,
