@@ -54,7 +54,8 @@ def artefacts():
 
 @pytest.fixture(scope="module", params=["opengl", "vulkan"])
 def any_window(request, blender, scene, tmp_path_factory):
-    """A `window.Window` on each of Blender's graphics back ends; it lasts for the tests of a file.
+    """A `window.Window` on each of Blender's graphics back ends; it lasts for the tests of a file. Where that has
+    `SIMULATES_EVENTS`, tests can: on Vulkan such a Blender is never idle.
 
     Not for all: without Lisle as well, Blender's Vulkan back end crashes on Mesa's software driver after some hundreds
     of scenes.
@@ -66,7 +67,8 @@ def any_window(request, blender, scene, tmp_path_factory):
     for name in ("pixels", "commands"):
         (folder / name).mkdir()
     display = window.Display(folder / "pixels")
-    opened = window.Window(blender, display, scene("sound"), folder / "commands", request.param)
+    options = ("--enable-event-simulate",) if getattr(request.module, "SIMULATES_EVENTS", False) else ()
+    opened = window.Window(blender, display, scene("sound"), folder / "commands", request.param, options)
     opened.artefacts = artefacts()
     yield opened
     code = opened.close()

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from looking import settled, srgb, world, yarn_mask
 
+SIMULATES_EVENTS = True
+
 BACKGROUND = (0.2, 0.4, 0.6)
 
 ACTIVE = """

@@ -3,6 +3,8 @@
 import pytest
 from looking import screen, settled, world
 
+SIMULATES_EVENTS = True
+
 PICTURES = """
 import importlib
 material = bpy.data.materials.new('Pictures')

@@ -4,6 +4,8 @@ import time
 
 import pytest
 
+SIMULATES_EVENTS = True
+
 SWATCH = """
 for obj in list(bpy.data.objects):
     if obj.type == 'CURVES':

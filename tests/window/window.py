@@ -49,9 +49,10 @@ class Ended(RuntimeError):
 
 
 class Window:
-    """A Blender with `blend` open; leaves by `close`."""
+    """A Blender with `blend` open; leaves by `close`. `options` are further ones of its command line."""
 
-    def __init__(self, program, display, blend, folder, backend):
+    def __init__(self, program, display, blend, folder, backend, options=()):
+        self._options = options
         self._program, self._blend, self._folders, self.display, self.backend = program, blend, folder, display, backend
         self._opened = 0
         self.open()
@@ -65,7 +66,7 @@ class Window:
         size = map(str, self.display.size)
         command = [
             self._program.path,
-            "--enable-event-simulate",
+            *self._options,
             "--gpu-backend",
             self.backend,
             "-p",
