@@ -9,6 +9,7 @@ use crate::Error;
 use crate::cone::{Entry, RoundCone};
 use crate::fibers::{Fibers, position};
 use crate::hierarchy::{Extent, Hierarchy, NOTHING, union};
+use crate::tangent::{direction_along, tangent_at};
 
 pub use crate::hierarchy::Ray;
 
@@ -165,7 +166,8 @@ impl Assembly {
         let position = ray.origin + ray.direction * hit.t;
         let axis_point = cone.a.lerp(cone.b, hit.along);
         let from_axis = position - axis_point;
-        let tangent = self.tangent(segment).lerp(self.tangent(segment + 1), hit.along).normalize();
+        let ends = [segment, segment + 1].map(|point| tangent_at(&self.points, point));
+        let tangent = direction_along(cone.b - cone.a, ends, hit.along);
         let across = from_axis - tangent * from_axis.dot(tangent);
         let cone_normal = from_axis.normalize_or(-ray.direction);
         let is_end = (hit.along <= 0.0 && !self.has_previous(segment)) || (hit.along >= 1.0 && !self.has_next(segment));
@@ -175,33 +177,6 @@ impl Assembly {
             cone_normal,
             tangent,
             radius: cone.radius_a + (cone.radius_b - cone.radius_a) * hit.along,
-        }
-    }
-
-    /// The fiber's tangent at a point: that of the parabola through it and its neighbours.
-    fn tangent(&self, point: usize) -> DVec3 {
-        let is_last = self.points[point][3].is_sign_negative();
-        let is_first = point == 0 || self.points[point - 1][3].is_sign_negative();
-        let chord = |from: usize| position(self.points[from + 1]) - position(self.points[from]);
-        let inner = |at: usize| {
-            let (before, after) = (chord(at - 1), chord(at));
-            let (a, b) = (before.length_squared(), after.length_squared());
-            (before * b + after * a).normalize_or(after.normalize_or(DVec3::X))
-        };
-        let mirrored = |chord: DVec3, inner: DVec3| {
-            let along = chord.normalize_or(inner);
-            along * (2.0 * inner.dot(along)) - inner
-        };
-        if is_first && self.points[point + 1][3].is_sign_negative() {
-            chord(point).normalize_or(DVec3::X)
-        } else if is_last && (point < 2 || self.points[point - 2][3].is_sign_negative()) {
-            chord(point - 1).normalize_or(DVec3::X)
-        } else if is_first {
-            mirrored(chord(point), inner(point + 1))
-        } else if is_last {
-            mirrored(chord(point - 1), inner(point - 1))
-        } else {
-            inner(point)
         }
     }
 }

@@ -14,6 +14,7 @@ mod render;
 mod settings;
 mod shutter;
 mod surfaces;
+mod tangent;
 mod world;
 
 pub use error::Error;
