@@ -152,7 +152,7 @@ def test_a_bright_texel_is_a_sun(scene):
     def lit(lights, environment=None):
         dark = lisle.Scene(scene.camera, lights, (0, 0, 0), environment)
         dark.add(scene.objects[0].yarns, scene.objects[0].yarn, scene.objects[0].material.replace(diffuse_weight=0.5))
-        return draw(dark, samples=32, bounces=1)["combined"][..., 0].mean(dtype=np.float64)
+        return draw(dark, samples=256, bounces=1)["combined"][..., 0].mean(dtype=np.float64)
 
     expected = lit([lisle.Sun(direction=-toward, strength=3.0)])
     # Interpolation spreads the texel over its neighbours, and narrow lobes see it no point: 3 %.
