@@ -173,11 +173,12 @@ def write(
 <h2>Change from frame to frame</h2>{_table(FLICKER_COLUMNS, flicker_rows)}
 <h2>Pictures</h2><p>Reference; picture; difference, red too bright, blue too dark; FLIP.</p>{"".join(figures)}</html>"""
     (folder / "index.html").write_text(body, encoding="utf-8")
-    once, all_orders = COLUMNS[:12], ("case", "mean %", *COLUMNS[13:])
+    split = COLUMNS.index("multiple: mean %")
+    once, all_orders = COLUMNS[:split], ("case", "mean %", *COLUMNS[split + 1 :])
     tables = [
         ("Goals", GOAL_COLUMNS, goals),
-        ("Scattered once", once, [each[:12] for each in rows]),
-        ("All orders of light", all_orders, [[each[0], *each[12:]] for each in rows]),
+        ("Scattered once", once, [each[:split] for each in rows]),
+        ("All orders of light", all_orders, [[each[0], *each[split:]] for each in rows]),
         ("By the angle between sun and camera", HOT_SPOT_COLUMNS, sun_rows),
         ("Flicker", FLICKER_COLUMNS, flicker_rows),
     ]
