@@ -68,22 +68,25 @@ fn core_chance(pixel: vec2u) -> CoreChance {
     return CoreChance(unit_from_hash(hash_combine(hash, 1u)), unit_from_hash(hash));
 }
 
+// HOLE of native/precompute/src/core_fiber.rs: the height where there is no fiber.
+const CORE_HOLE: f32 = -2.0;
+
 // What visibility wants of a texel: the height, and where its fiber is in the layer's order, packed by native/gpu/src/tables.rs.
 struct CoreHeight {
-    // HOLE of native/precompute/src/core_fiber.rs where there is none.
     height: f32,
     // Share of the layer's own fibers before this one; 1 for those of the next layer.
     place: f32,
 }
 
 // Bits of a place.
-const PLACE_BITS: u32 = 5u;
+const CORE_PLACE_BITS: u32 = 5u;
 
 fn core_height_at(yarn: Yarn, texel: u32) -> CoreHeight {
     let half = (tables[yarn.core_heights + texel / 2u] >> (16u * (texel & 1u))) & 0xffffu;
-    let last_height = f32((1u << (16u - PLACE_BITS)) - 1u);
-    let last_place = f32((1u << PLACE_BITS) - 1u);
-    return CoreHeight(4.0 * f32(half >> PLACE_BITS) / last_height - 2.0, f32(half & ((1u << PLACE_BITS) - 1u)) / last_place);
+    let last_height = f32((1u << (16u - CORE_PLACE_BITS)) - 1u);
+    let last_place = f32((1u << CORE_PLACE_BITS) - 1u);
+    let place = half & ((1u << CORE_PLACE_BITS) - 1u);
+    return CoreHeight(4.0 * f32(half >> CORE_PLACE_BITS) / last_height + CORE_HOLE, f32(place) / last_place);
 }
 
 // A texel and its height.
@@ -103,7 +106,7 @@ fn core_shown(yarn: Yarn, hit: CoreHit, fibers: f32, chance: CoreChance) -> Core
             shown.texel += yarn.core_length * yarn.core_width;
             shown.height = core_height_at(yarn, shown.texel).height;
         } else {
-            shown.height = -2.0;
+            shown.height = CORE_HOLE;
         }
     }
     return shown;

@@ -19,7 +19,7 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
             let height = core_shown(yarn, hit, detail.fibers, core_chance(vec2u(pixel))).height;
             var key = Key(0u, 0u);
-            if height >= -1.5 {
+            if height > CORE_HOLE {
                 let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
                 let behind = depth_beyond_chord(a.depth_rate * (t1 - t0) - chord, b.depth_rate * (t1 - t0) - chord, hit.t);
                 let depth = line_depth(line, line_share(line, hit.t)) + behind - nearer;

@@ -349,8 +349,8 @@ mod tests {
 
     /// Constants that are written both here and in WGSL.
     fn shared_constants() -> Vec<(&'static str, f64)> {
-        use crate::{aov, cryptomatte, frame, layout};
-        use lisle_precompute::{HALF_WAY, SHARED_OVER_WIDTH, TURNS, Transport, TransportSize};
+        use crate::{aov, cryptomatte, frame, layout, tables};
+        use lisle_precompute::{HALF_WAY, HOLE, SHARED_OVER_WIDTH, TURNS, Transport, TransportSize};
         let size = TransportSize::ALL;
         vec![
             ("KNOT_BEGINS_SEGMENT", layout::KNOT_BEGINS_SEGMENT.into()),
@@ -369,6 +369,8 @@ mod tests {
             ("ROW", frame::ROW.into()),
             ("MOST_SKY_VIEWS", frame::LEAST_SKY_VIEWS.into()),
             ("TURNS_KEPT", TURNS as f64),
+            ("CORE_HOLE", HOLE.into()),
+            ("CORE_PLACE_BITS", tables::CORE_PLACE_BITS.into()),
             ("HALF_WAY", HALF_WAY),
             ("SHARED_OVER_WIDTH", SHARED_OVER_WIDTH),
             ("TRANSPORT_LIGHT_LONGITUDES", size.light_longitudes as f64),

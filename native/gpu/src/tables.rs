@@ -136,17 +136,17 @@ impl YarnTables {
     }
 }
 
-/// Bits of a fiber's place beside a core texture's height: PLACE_BITS of shaders/passes/core_line.wgsl.
-const PLACE_BITS: u32 = 5;
+/// Bits of a fiber's place beside a core texture's height: CORE_PLACE_BITS of shaders/passes/core_line.wgsl.
+pub(crate) const CORE_PLACE_BITS: u32 = 5;
 
 /// A core texture's height with the place of its fiber among those of its layer that are not in the next one, 16 bits.
 fn pack_height(height: f32, place: f64) -> u32 {
     let last = |bits: u32| f64::from((1_u32 << bits) - 1);
-    let height = (f64::from(0.25 * height + 0.5).clamp(0.0, 1.0) * last(16 - PLACE_BITS)).round();
+    let height = (f64::from(0.25 * height + 0.5).clamp(0.0, 1.0) * last(16 - CORE_PLACE_BITS)).round();
     // The last one is for fibers of the next layer.
-    let last_place = last(PLACE_BITS);
+    let last_place = last(CORE_PLACE_BITS);
     let place = if place < 1.0 { (place * last_place).round().min(last_place - 1.0) } else { last_place };
-    (height as u32) << PLACE_BITS | place as u32
+    (height as u32) << CORE_PLACE_BITS | place as u32
 }
 
 /// Heights and places, two to a word.
@@ -402,7 +402,7 @@ mod tests {
             let core = &tables.core_fiber;
             let words = &buffer.words.0;
             let stored = |texel: usize| words[kind.core_heights as usize + texel / 2] >> (16 * (texel & 1)) & 0xffff;
-            let height = |texel: usize| f64::from(stored(texel) >> PLACE_BITS) / 2047.0 * 4.0 - 2.0;
+            let height = |texel: usize| f64::from(stored(texel) >> CORE_PLACE_BITS) / 2047.0 * 4.0 - 2.0;
             assert!((0..core.texels.len()).all(|k| (height(k) - f64::from(core.texels[k][0])).abs() < 0.001));
             assert!((0..core.texels.len()).any(|k| (height(k) - f64::from(core.texels[0][0])).abs() > 0.1));
             // Layer 2 has the fibers from 4/36 on, layer 3 those from 9/36.
