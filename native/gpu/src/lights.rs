@@ -1,6 +1,7 @@
 //! Lights and the views their shadows are drawn from, one sample at a time.
 
 use glam::{DMat4, DVec3, DVec4};
+use lisle_core::scene::Lobe;
 
 use crate::layout::{self, LIGHT_AREA, LIGHT_POINT, LIGHT_SUN};
 use crate::sampling::{Use, basis, disc, pair, sphere};
@@ -150,13 +151,14 @@ impl LightSample {
                 let (x, y) = basis(center);
                 let [u, v] = disc(uniform).map(|c| c * (0.5 * angle_rad.min(3.1)).tan());
                 let toward = (center + x * u + y * v).normalize();
-                item.kind = LIGHT_SUN;
-                item.position = toward.as_vec3();
-                item.color = irradiance;
-                let resolution = f64::from(self.resolution);
-                let Extent { focus, wide } = &self.extent;
-                let wide = (!wide.is_empty()).then(|| parallel_view(toward, wide, wide, resolution));
-                [vec![parallel_view(toward, focus, &self.extent.all(), resolution)], wide.into_iter().collect()]
+                (item.kind, item.position, item.color) = (LIGHT_SUN, toward.as_vec3(), irradiance);
+                self.parallel_views(toward)
+            }
+            // Directions have the density of the radiance, so that each stands for all light.
+            Light::Gaussian { direction, fluence, sharpness } => {
+                let toward = Lobe::new(-direction, sharpness).sample(uniform);
+                (item.kind, item.position, item.color) = (LIGHT_SUN, toward.as_vec3(), fluence);
+                self.parallel_views(toward)
             }
             Light::Point { position, power, radius, cone } => {
                 let position = position - origin + sphere(uniform) * radius;
@@ -186,6 +188,14 @@ impl LightSample {
         (item.wide_view, item.wide_view_count) = (self.views.len() as u32, wide.len() as u32);
         self.views.extend(wide);
         self.lights.push(item);
+    }
+
+    /// A view about the yarns, and one about all meshes.
+    fn parallel_views(&self, toward: DVec3) -> [Vec<layout::ShadowView>; 2] {
+        let resolution = f64::from(self.resolution);
+        let Extent { focus, wide } = &self.extent;
+        let wide = (!wide.is_empty()).then(|| parallel_view(toward, wide, wide, resolution));
+        [vec![parallel_view(toward, focus, &self.extent.all(), resolution)], wide.into_iter().collect()]
     }
 
     /// Views about the yarns, and about all meshes: a cube of six is about both.
@@ -221,7 +231,7 @@ fn cone_cosines(cone: &Cone) -> [f32; 2] {
 
 /// Most shadow views that one sample of these lights and so many of the sky needs; with meshes, beside yarns or not.
 pub(crate) fn most_views(lights: &[Light], sky_views: u32, meshes: bool) -> u32 {
-    let of = |light: &Light| if matches!(light, Light::Sun { .. }) { 1 } else { 6 };
+    let of = |light: &Light| if matches!(light, Light::Sun { .. } | Light::Gaussian { .. }) { 1 } else { 6 };
     (lights.iter().map(of).sum::<u32>() + sky_views) * if meshes { 2 } else { 1 }
 }
 
@@ -230,6 +240,6 @@ pub(crate) fn is_soft(light: &Light) -> bool {
     match *light {
         Light::Sun { angle_rad, .. } => angle_rad > 0.0,
         Light::Point { radius, .. } => radius > 0.0,
-        Light::Area { .. } => true,
+        Light::Area { .. } | Light::Gaussian { .. } => true,
     }
 }

@@ -15,7 +15,7 @@ from .environment import Environment
 from .errors import Cancelled, DeviceError, Error, InputError
 from .fabric import MeshKnit, knit_on_mesh, knit_sleeve, knit_swatch, knit_tube, sweater, woven_swatch
 from .image import FURTHER_PASSES, Image
-from .lights import Area, Light, Point, Spot, Sun
+from .lights import Area, Gaussian, Light, Point, Spot, Sun
 from .loading import load
 from .material import Material
 from .mesh import Mesh, Texture
@@ -34,6 +34,7 @@ __all__ = [
     "Environment",
     "Error",
     "Fibers",
+    "Gaussian",
     "Image",
     "InputError",
     "Light",

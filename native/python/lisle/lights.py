@@ -44,6 +44,40 @@ class Sun:
         object.__setattr__(self, "angle_rad", _at_least_zero("Sun.angle_rad", self.angle_rad))
 
 
+LEAST_SHARPNESS = 1e-6
+MOST_SHARPNESS = 1e12
+
+
+@dataclass(frozen=True)
+class Gaussian:
+    """Light from everywhere, infinitely far away, that is brightest about a direction: a spherical Gaussian.
+
+    The radiance from a unit direction w is A exp(sharpness (w·d - 1)), where d points against `direction` and
+    A = strength sharpness / (2π (1 - exp(-2 sharpness))). A sharp one is a `Sun` of the same strength, one of next to no
+    sharpness an even sky of radiance strength / 4π. The camera does not see it.
+
+    Args:
+        direction: in which the brightest light travels, world space; of any length.
+        strength: the radiance over all directions, W/m²; of a sharp one, the irradiance on a surface that faces it.
+        sharpness: from 1e-6 to 1e12. Where it is large, radiance falls to 61 % at 1/√sharpness radians from the middle.
+        color: scene-linear Rec.709.
+    """
+
+    direction: Vector
+    strength: float = 1.0
+    sharpness: float = 10.0
+    color: Vector = WHITE
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "direction", arguments.direction("Gaussian.direction", self.direction))
+        object.__setattr__(self, "strength", _at_least_zero("Gaussian.strength", self.strength))
+        sharpness = arguments.number("Gaussian.sharpness", self.sharpness)
+        if not LEAST_SHARPNESS <= sharpness <= MOST_SHARPNESS:
+            raise InputError(f"Gaussian.sharpness: {sharpness} is not from {LEAST_SHARPNESS} to {MOST_SHARPNESS}")
+        object.__setattr__(self, "sharpness", sharpness)
+        object.__setattr__(self, "color", arguments.triple("Gaussian.color", self.color))
+
+
 @dataclass(frozen=True)
 class Point:
     """A glowing sphere.
@@ -141,4 +175,4 @@ class Area:
             raise InputError(f'Area.shape: {self.shape!r} is neither "rectangle" nor "disk"')
 
 
-Light: TypeAlias = Sun | Point | Spot | Area
+Light: TypeAlias = Sun | Gaussian | Point | Spot | Area

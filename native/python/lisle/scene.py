@@ -14,7 +14,7 @@ from ._native import Yarns
 from .camera import Camera
 from .environment import Environment
 from .errors import InputError
-from .lights import Area, Light, Point, Spot, Sun
+from .lights import Light
 from .material import Material
 from .mesh import Mesh
 from .yarn import Yarn
@@ -71,8 +71,9 @@ class Scene:
         self.camera = camera
         self.lights = arguments.items("lights", lights, "a list of lights")
         for index, light in enumerate(self.lights):
-            if not isinstance(light, (Sun, Point, Spot, Area)):
-                raise InputError(f"light {index}: expected a Sun, Point, Spot or Area, got {type(light).__name__}")
+            if not isinstance(light, Light):
+                names = "Sun, Gaussian, Point, Spot or Area"
+                raise InputError(f"light {index}: expected a {names}, got {type(light).__name__}")
         self.ambient = arguments.triple("ambient", ambient)
         if not isinstance(environment, Environment | None):
             raise InputError(f"environment: expected a lisle.Environment, got {type(environment).__name__}")

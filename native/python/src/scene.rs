@@ -48,6 +48,8 @@ pub enum LightFields {
     Area { world_from_light: Rows, size: [f64; 2], power: f32, color: [f32; 3], shape: String },
     /// `lisle.Point`
     Point { position: [f64; 3], power: f32, color: [f32; 3], radius: f64 },
+    /// `lisle.Gaussian`
+    Gaussian { direction: [f64; 3], strength: f32, color: [f32; 3], sharpness: f64 },
     /// `lisle.Sun`
     Sun { direction: [f64; 3], strength: f32, color: [f32; 3], angle_rad: f64 },
 }
@@ -105,6 +107,9 @@ impl From<LightFields> for Light {
         match fields {
             LightFields::Sun { direction, strength, color, angle_rad } => {
                 Self::Sun { direction: direction.into(), irradiance: strength * Vec3::from(color), angle_rad }
+            }
+            LightFields::Gaussian { direction, strength, color, sharpness } => {
+                Self::Gaussian { direction: direction.into(), fluence: strength * Vec3::from(color), sharpness }
             }
             LightFields::Point { position, power, color, radius } => {
                 Self::Point { position: position.into(), power: power * Vec3::from(color), radius, cone: None }

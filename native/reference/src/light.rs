@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DMat4, DVec3};
 use lisle_core::sampling::{Random, basis, disc, sphere};
-use lisle_core::scene::{Cone, Environment, Light};
+use lisle_core::scene::{Cone, Environment, Light, Lobe};
 
 /// A direction drawn towards a light.
 pub(crate) struct LightSample {
@@ -29,6 +29,8 @@ pub(crate) struct Glow {
 pub(crate) enum Emitter {
     /// Parallel light, or a disc at infinity; `tangent` is that of half its diameter.
     Sun { toward: DVec3, axes: (DVec3, DVec3), irradiance: DVec3, tangent: f64 },
+    /// All around, infinitely far, with radiance in proportion to its density.
+    Gaussian { lobe: Lobe, fluence: DVec3 },
     /// A sphere of even radiance, or a point.
     Point { center: DVec3, power: DVec3, radius: f64, cone: Option<Cone> },
     /// One side of a parallelogram or an ellipse.
@@ -59,6 +61,9 @@ impl Emitter {
                 let tangent = (0.5 * angle_rad.min(3.1)).tan();
                 Self::Sun { toward, axes: basis(toward), irradiance: irradiance.as_dvec3(), tangent }
             }
+            Light::Gaussian { direction, fluence, sharpness } => {
+                Self::Gaussian { lobe: Lobe::new(-direction, sharpness), fluence: fluence.as_dvec3() }
+            }
             Light::Point { position, power, radius, cone } => {
                 Self::Point { center: position - origin, power: power.as_dvec3(), radius, cone }
             }
@@ -85,7 +90,7 @@ impl Emitter {
             Self::Sun { tangent, .. } => *tangent > 0.0,
             Self::Point { radius, .. } => *radius > 0.0,
             Self::Area(panel) => panel.area > 0.0,
-            Self::Sky(_) => true,
+            Self::Gaussian { .. } | Self::Sky(_) => true,
         }
     }
 
@@ -98,6 +103,11 @@ impl Emitter {
                 let direction = (*toward + axes.0 * u + axes.1 * v).normalize();
                 let pdf = sun_density(direction.dot(*toward), *tangent);
                 Some(LightSample { direction, distance: f64::INFINITY, irradiance: *irradiance, pdf })
+            }
+            Self::Gaussian { lobe, fluence } => {
+                let direction = lobe.sample(uniform);
+                let pdf = lobe.pdf(direction);
+                Some(LightSample { direction, distance: f64::INFINITY, irradiance: *fluence, pdf })
             }
             Self::Point { center, power, radius, cone } => {
                 let to_center = *center - point;
@@ -168,6 +178,10 @@ impl Emitter {
                     let pdf = sun_density(cos, *tangent);
                     Glow { distance: f64::INFINITY, radiance: *irradiance * pdf, pdf }
                 })
+            }
+            Self::Gaussian { lobe, fluence } => {
+                let pdf = lobe.pdf(direction);
+                Some(Glow { distance: f64::INFINITY, radiance: *fluence * pdf, pdf })
             }
             Self::Point { center, power, radius, cone } => {
                 let to_center = *center - point;
@@ -240,10 +254,13 @@ mod tests {
         let power = Vec3::splat(50.0);
         let turned = DMat4::from_translation(DVec3::new(0.2, 0.1, 3.0)) * DMat4::from_rotation_x(0.4);
         let point = |position, radius, cone| Light::Point { position, power, radius, cone };
+        let gaussian = |sharpness| Light::Gaussian { direction: DVec3::new(0.3, 0.2, -1.0), fluence: power, sharpness };
         let cone = Cone { direction: DVec3::new(0.1, 0.0, -1.0), angle_rad: 0.9, blend: 0.5 };
         let area = |ellipse| Light::Area { world_from_light: turned, size: [2.0, 1.0], ellipse, power };
         vec![
             ("sun", Light::Sun { direction: DVec3::new(0.3, 0.2, -1.0), irradiance: Vec3::ONE, angle_rad: 0.6 }),
+            ("wide Gaussian", gaussian(0.5)),
+            ("Gaussian", gaussian(20.0)),
             ("sphere", point(DVec3::new(0.5, 0.4, 2.0), 0.7, None)),
             ("sphere about the point", point(DVec3::new(0.1, 0.0, 0.2), 1.0, None)),
             ("spot", point(DVec3::new(0.1, 0.2, 3.0), 0.5, Some(cone))),

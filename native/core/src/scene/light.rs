@@ -1,6 +1,6 @@
 use glam::{DMat4, DVec3, Vec3};
 
-use super::SceneError;
+use super::{Lobe, SceneError};
 
 /// A light. Colours are scene-linear Rec.709; powers and strengths follow Blender's conventions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +13,16 @@ pub enum Light {
         irradiance: Vec3,
         /// Apparent diameter, radians.
         angle_rad: f64,
+    },
+    /// Infinitely far, and brightest about a direction: a spherical Gaussian of radiance A exp(λ (ω·d − 1)) from a unit direction ω, with d
+    /// against `direction` [Khungurn2017]. As λ grows it becomes a sun, as λ goes to 0 an even sky.
+    Gaussian {
+        /// Direction in which the brightest light travels, world space.
+        direction: DVec3,
+        /// Radiance over all directions, W/m²: 2π A (1 − e^(−2λ)) / λ. Of a sharp lobe this is the irradiance on a surface facing it.
+        fluence: Vec3,
+        /// λ, in [`Lobe::SHARPNESS`]: 1/√λ is about the radius of the lobe in radians, where it is small.
+        sharpness: f64,
     },
     /// A glowing sphere; a spot if it has a cone.
     Point {
@@ -68,6 +78,17 @@ pub(super) fn validate(lights: &[Light]) -> Result<(), SceneError> {
                     None
                 }
             }
+            Light::Gaussian { direction, fluence, sharpness } => {
+                if !direction.is_finite() || direction.length() < 1e-12 {
+                    Some("the direction is zero or not finite")
+                } else if !Lobe::SHARPNESS.contains(&sharpness) {
+                    Some("the sharpness is not from 1e-6 to 1e12")
+                } else if !finite(fluence) {
+                    Some("the strength is negative or not finite")
+                } else {
+                    None
+                }
+            }
             Light::Point { position, power, radius, cone } => {
                 if !position.is_finite() {
                     Some("the position is not finite")
@@ -100,4 +121,31 @@ pub(super) fn validate(lights: &[Light]) -> Result<(), SceneError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gaussian_that_cannot_shine_is_refused_with_the_reason() {
+        let good = |direction, fluence: f32, sharpness| Light::Gaussian {
+            direction,
+            fluence: Vec3::splat(fluence),
+            sharpness,
+        };
+        let sun = Light::Sun { direction: DVec3::Z, irradiance: Vec3::ONE, angle_rad: 0.0 };
+        for (light, word) in [
+            (good(DVec3::ZERO, 1.0, 1.0), "direction"),
+            (good(DVec3::Z, -1.0, 1.0), "strength"),
+            (good(DVec3::Z, f32::NAN, 1.0), "strength"),
+            (good(DVec3::Z, 1.0, 0.0), "sharpness"),
+            (good(DVec3::Z, 1.0, 1e13), "sharpness"),
+            (good(DVec3::Z, 1.0, f64::NAN), "sharpness"),
+        ] {
+            let error = validate(&[sun, light]).expect_err(word).to_string();
+            assert!(error.contains("light 1") && error.contains(word), "{error}");
+        }
+        validate(&[good(DVec3::Z, 0.0, 1e-6), good(DVec3::Z, 1.0, 1e12)]).expect("valid");
+    }
 }

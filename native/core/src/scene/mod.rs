@@ -3,12 +3,14 @@
 mod environment;
 mod lens;
 mod light;
+mod lobe;
 mod mesh;
 mod motion;
 
 pub use environment::{Environment, EnvironmentImage};
 pub use lens::Lens;
 pub use light::{Cone, Light};
+pub use lobe::Lobe;
 pub use mesh::{Mesh, MeshKind, Texture, Triangles};
 pub use motion::between;
 
