@@ -74,6 +74,7 @@ def test_more_light_is_brighter_and_no_light_is_black(draw):
     "light",
     [
         lisle.Sun(direction=(0, 1, 0), strength=3, angle_rad=0.1),
+        lisle.Gaussian(direction=(0, 1, 0), strength=3, sharpness=20),
         lisle.Point(position=(0, -0.2, 0), power=1, radius=0.01),
         lisle.Spot(position=(0, -0.2, 0), direction=(0, 1, 0), power=1, cone_angle_rad=1.0),
         lisle.Area(

@@ -45,6 +45,12 @@ def test_a_camera_keeps_its_matrices():
         (lambda: lisle.Camera(np.eye(4), np.eye(4), (1, 1), blades=-3), ["Camera.blades", "-3"]),
         (lambda: lisle.Sun(direction=(0, 0, 0)), ["Sun.direction"]),
         (lambda: lisle.Sun(direction=(0, 0, 1), strength=-1), ["Sun.strength", "-1"]),
+        (lambda: lisle.Gaussian(direction=(0, 0, 0)), ["Gaussian.direction"]),
+        (lambda: lisle.Gaussian((0, 0, 1), strength=-2), ["Gaussian.strength", "-2"]),
+        (lambda: lisle.Gaussian((0, 0, 1), sharpness=0), ["Gaussian.sharpness", "0", "1e-06"]),
+        (lambda: lisle.Gaussian((0, 0, 1), sharpness=math.nan), ["Gaussian.sharpness", "nan"]),
+        (lambda: lisle.Gaussian((0, 0, 1), sharpness="wide"), ["Gaussian.sharpness", "'wide'"]),
+        (lambda: lisle.Gaussian((0, 0, 1), color=(1, 1)), ["Gaussian.color", "three numbers"]),
         (lambda: lisle.Point(position=(0, 0)), ["Point.position", "three numbers"]),
         (lambda: lisle.Point(position=(0, 0, math.inf)), ["Point.position", "inf"]),
         (lambda: lisle.Spot((0, 0, 0), (0, 0, 1), cone_angle_rad=4), ["Spot.cone_angle_rad"]),
@@ -87,7 +93,7 @@ def test_what_is_added_to_a_scene_is_checked(swatch, camera):
     ]:
         with pytest.raises(lisle.InputError, match=words):
             scene.add(**arguments, name="back")
-    with pytest.raises(lisle.InputError, match="light 1"):
+    with pytest.raises(lisle.InputError, match="light 1: expected a Sun, Gaussian, Point, Spot or Area, got str"):
         lisle.Scene(camera, [lisle.Sun((0, 0, -1)), "lamp"])
     with pytest.raises(lisle.InputError, match="camera"):
         lisle.Scene(None)

@@ -27,9 +27,10 @@ import lisle
 import numpy as np
 
 yarns: lisle.Yarns = lisle.load("glove.bcc")
-image = lisle.Renderer().render(yarns, lights=[lisle.Sun(direction=(-1, 1, -2), strength=3.0)], progress=print)
+lights: list[lisle.Light] = [lisle.Sun(direction=(-1, 1, -2)), lisle.Gaussian(direction=(0, 0, -1), sharpness=5.0)]
+image = lisle.Renderer().render(yarns, lights=lights, progress=print)
 pixels: np.ndarray = image["combined"]
-lisle.Sun(direction="down")
+lisle.Gaussian(direction="down")
 """
 
 
@@ -37,5 +38,5 @@ def test_a_script_sees_the_types(tmp_path):
     (tmp_path / "use.py").write_text(USE)
     command = [sys.executable, "-m", "mypy", "--strict", "use.py"]
     result = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
-    assert "use.py:8: error" in result.stdout
+    assert "use.py:9: error" in result.stdout
     assert result.stdout.count("error:") == 1, result.stdout

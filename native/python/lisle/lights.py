@@ -53,8 +53,8 @@ class Gaussian:
     """Light from everywhere, infinitely far away, that is brightest about a direction: a spherical Gaussian.
 
     The radiance from a unit direction w is A exp(sharpness (w·d - 1)), where d points against `direction` and
-    A = strength sharpness / (2π (1 - exp(-2 sharpness))). A sharp one is a `Sun` of the same strength, one of next to no
-    sharpness an even sky of radiance strength / 4π. The camera does not see it.
+    A = strength sharpness / (2π (1 - exp(-2 sharpness))). A sharp one is a `Sun` of the same strength, one of next to
+    no sharpness an even sky of radiance strength / 4π. The camera does not see it.
 
     Args:
         direction: in which the brightest light travels, world space; of any length.
