@@ -64,7 +64,7 @@ def main():
     text += row("yarn_radius", curves.radii[:1])
     for points in np.split(curves.points, curves.offsets[1:-1]):
         text += row("curve", points)
-    for name, bounces in (("direct", 1), ("two", 2)):
+    for name, bounces in (("direct", 1), ("two", 2), ("all", None)):
         shown = mitsuba_scene({"type": "bsplinecurve", "filename": str(file), "bsdf": HAIR}, bounces)
         rounds = np.stack([np.array(mi.render(shown, spp=SAMPLES, seed=i))[..., 0] for i in range(ROUNDS)])
         shape = (ROUNDS, SIZE[1] // BLOCK, BLOCK, SIZE[0] // BLOCK, BLOCK)

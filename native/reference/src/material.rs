@@ -7,7 +7,7 @@ use glam::DVec3;
 use lisle_core::scattering::{FiberScattering, Material};
 use lisle_core::scene::Shading;
 
-use lisle_core::sampling::{Random, sphere};
+use lisle_core::sampling::Random;
 
 /// Scattering at the point of a fiber that is seen, from wherever on the width: a function to compare with other renderers, of no use to
 /// pictures.
@@ -15,6 +15,13 @@ pub trait NearField: Send + Sync {
     /// f times the cosine, 1/sr: radiance towards `wo` per radiance and solid angle from `wi`, both in the fiber's axes. X is the normal of the
     /// surface at the point, Z the tangent, so that `wo` tells where on the width the point is seen.
     fn evaluate(&self, wo: DVec3, wi: DVec3) -> DVec3;
+
+    /// A direction that light is taken from, drawn with the density [`Self::pdf`]; that should be nearly in proportion to [`Self::evaluate`]: what is
+    /// left of their ratio multiplies from bounce to bounce.
+    fn sample(&self, wo: DVec3, random: &mut Random) -> DVec3;
+
+    /// Density over the solid angle, above 0 wherever light is taken from.
+    fn pdf(&self, wo: DVec3, wi: DVec3) -> f64;
 }
 
 /// Which of the parts scatters.
@@ -27,9 +34,6 @@ pub(crate) enum Part {
     /// Another function at the surface, which takes in light from all around.
     Near,
 }
-
-/// Density of all directions alike.
-const EVEN: f64 = 0.25 * FRAC_1_PI;
 
 /// All parts of a material.
 #[derive(Clone)]
@@ -102,7 +106,7 @@ impl Scattering {
             (Part::Fiber, Some(fiber)) => (1.0 - chance) * fiber.pdf(wo, wi),
             (Part::Fiber, None) => 0.0,
             (Part::Surface, _) => chance * FRAC_1_PI * wi.x.max(0.0),
-            (Part::Near, _) => EVEN,
+            (Part::Near, _) => self.near.as_ref().map_or(0.0, |near| near.pdf(wo, wi)),
         }
     }
 
@@ -120,8 +124,10 @@ impl Scattering {
     /// Draws a part and a direction; `None` where nothing is scattered.
     pub fn sample(&self, wo: DVec3, random: &mut Random) -> Option<Onward> {
         if let Some(near) = &self.near {
-            let wi = sphere(random.pair());
-            return Some(Onward { part: Part::Near, wi, weight: near.evaluate(wo, wi) / EVEN, pdf: EVEN });
+            let wi = near.sample(wo, random);
+            let pdf = near.pdf(wo, wi);
+            let weight = near.evaluate(wo, wi) / pdf;
+            return (pdf > 0.0).then_some(Onward { part: Part::Near, wi, weight, pdf });
         }
         let chance = self.surface_chance(wo);
         let (choice, numbers) = (random.unit(), random.triple());
