@@ -19,8 +19,9 @@ SURFACES = Surfaces()
 
 _SHADOW_TEXELS = (256, 512, 1024)
 _PHOTONS = (20_000, 20_000, 500_000)
-"""By the painter's quality: along one side of a shadow map, and of the tables of multiple scattering, whose final ones
-take seconds for a material that was never seen before."""
+_SKY_DIRECTIONS = (3, 8, 8)
+"""By the painter's quality: along one side of a shadow map; of the tables of multiple scattering, whose final ones
+take seconds for a material that was never seen before; and in which the sky is seen."""
 
 _numbers = itertools.count()
 
@@ -93,6 +94,7 @@ class Snapshot:
                     samples=samples,
                     first_sample=first_sample,
                     shadow_resolution=_SHADOW_TEXELS[quality],
+                    sky_directions=_SKY_DIRECTIONS[quality],
                     transport_photons=_PHOTONS[quality] if self._multiple_scattering else 0,
                     progress=lambda _: go_on(),
                     **settings,

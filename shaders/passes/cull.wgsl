@@ -30,13 +30,13 @@ fn work_of(segment: u32) -> Work {
     if (knot_radii[knot].x & KNOT_BEGINS_SEGMENT) == 0u {
         return Work(0u, 0u);
     }
-    let p0 = knot_position(draw, knot - 1u);
-    let p1 = knot_position(draw, knot);
-    let p2 = knot_position(draw, knot + 1u);
-    let p3 = knot_position(draw, knot + 2u);
-    let hull = array<vec3f, 4>(p1, p1 + (p2 - p0) / 6.0, p2 - (p3 - p1) / 6.0, p2);
+    let s = segment_at(draw, segment);
+    let p1 = s.position.a;
+    let p2 = s.end.xyz;
+    let end_velocity = s.position.b + 2.0 * s.position.c + 3.0 * s.position.d;
+    let hull = array<vec3f, 4>(p1, p1 + s.position.b / 3.0, p2 - end_velocity / 3.0, p2);
     let yarn = yarns[draws[draw].yarn];
-    let radius = yarn.bound * max(knot_radius(draw, knot), knot_radius(draw, knot + 1u));
+    let radius = yarn.bound * max(s.radius.x, s.end.w);
     let rows = transpose(frame.pixel_from_render);
     let low = vec2f(frame.origin) - frame.cull_margin;
     let high = vec2f(frame.origin + frame.size) + frame.cull_margin;
@@ -45,13 +45,12 @@ fn work_of(segment: u32) -> Work {
         || outside(rows[3] - vec4f(0.0, 0.0, 0.0, frame.near), hull, radius) {
         return Work(0u, 0u);
     }
-    let scale = scale_between(yarn, p1, knot_radius(draw, knot), p2, knot_radius(draw, knot + 1u));
+    let scale = scale_of(yarn, s);
     let count = most_fibers(yarn, scale);
     atomicAdd(&fibers, yarn.plies * count);
     // At least one item, by which the core pass knows that the segment is in view.
-    let items = yarn.plies * max(1u, (count + CHUNK - 1u) / CHUNK);
+    let items = plies_apart(yarn.plies, count) * max(1u, (count + CHUNK - 1u) / CHUNK);
 
-    let s = segment_at(draw, segment);
     let lines = lines_about(yarn, segment_rates(yarn, s), scale.radius_pixels);
     let width = 2.0 * yarn.fiber_radius * scale.radius_pixels + 2.0;
     let chord = length(p2 - p1) * scale.radius_pixels / max(min(s.radius.x, s.end.w), 1e-30);

@@ -48,7 +48,7 @@ fn self_shadow_behind(yarn: Yarn, seen: SeenPoint, gamma: f32) -> f32 {
     return 0.5 * (self_shadow(yarn, seen, behind * cos(gamma) + off) + self_shadow(yarn, seen, behind * cos(gamma) - off));
 }
 
-// As LEAST_SKY_VIEWS of native/gpu/src/frame/mod.rs.
+// As in native/gpu/src/frame/mod.rs.
 const MOST_SKY_VIEWS: u32 = 8u;
 
 // The directions of this sample in which a point sees sky or other yarns.

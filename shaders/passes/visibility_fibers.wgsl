@@ -121,45 +121,34 @@ fn find_segment(item: u32) -> Found {
     return Found(first, rest - before, segment_work[first] >> WORK_BITS);
 }
 
-@compute @workgroup_size(64)
-fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
-    let item = folded_index(workgroup, local, LANES);
-    if item >= dispatch[3] {
-        return;
-    }
-    let found = find_segment(item);
-    let segment = found.segment;
-    let draw = find_draw(segment);
-    let yarn = yarns[draws[draw].yarn];
-    // Items run over plies first, then over the threads that share a line, then over chunks.
-    let ply = found.item % yarn.plies;
-    let turn = found.item / yarn.plies;
-    let parts = Parts(1u << found.parts_exponent, turn & ((1u << found.parts_exponent) - 1u));
-    let first = (turn >> found.parts_exponent) * CHUNK;
-    let s = segment_at(draw, segment);
-    let scale = scale_of(yarn, s);
-    let last = min(first + CHUNK, most_fibers(yarn, scale));
-    let rates = segment_rates(yarn, s);
-    let steps = fiber_steps(yarn, rates, scale.radius_pixels);
-    let seed = ply_seed(s.seed, ply);
-    let first_slot = ply * (yarn.fibers + 1u) + 1u;
-    // Those that may fly away have the first ranks.
-    let first_regular = max(first, yarn.flyaway_fibers);
-    var start = screen_ply(yarn, s, scale.ends, 0.0, ply);
+// What the fibers of a segment share.
+struct Bundle {
+    yarn: Yarn,
+    segment: Segment,
+    number: u32,
+    scale: Scale,
+    rates: Rates,
+    steps: u32,
+}
+
+// Fibers of one ply that stay in it, by rank: the first, and one past the last.
+fn draw_regular(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
+    let seed = ply_seed(b.segment.seed, ply);
+    let first_slot = ply * (b.yarn.fibers + 1u) + 1u;
+    var start = screen_ply(b.yarn, b.segment, b.scale.ends, 0.0, ply);
     var step = 1u;
     loop {
-        let t0 = f32(step - 1u) / f32(steps);
-        let t1 = f32(step) / f32(steps);
-        let end = screen_ply(yarn, s, scale.ends, t1, ply);
-        var rank = first_regular;
+        let t0 = f32(step - 1u) / f32(b.steps);
+        let t1 = f32(step) / f32(b.steps);
+        let end = screen_ply(b.yarn, b.segment, b.scale.ends, t1, ply);
+        var rank = first;
         loop {
             // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
-            let fiber = fiber_at(yarn, seed, rank);
-            let a = fiber_end(yarn, start, fiber, regular_section(yarn, s, start.yarn, fiber));
-            let b = fiber_end(yarn, end, fiber, regular_section(yarn, s, end.yarn, fiber));
-            if rank < last && is_in_view(a, b) {
-                draw_between(a, b, t0, t1, key_owner(segment, first_slot + rank), parts);
+            let fiber = fiber_at(b.yarn, seed, rank);
+            let from_end = fiber_end(b.yarn, start, fiber, regular_section(b.yarn, b.segment, start.yarn, fiber));
+            let to_end = fiber_end(b.yarn, end, fiber, regular_section(b.yarn, b.segment, end.yarn, fiber));
+            if rank < last && is_in_view(from_end, to_end) {
+                draw_between(from_end, to_end, t0, t1, key_owner(b.number, first_slot + rank), parts);
             }
             rank++;
             if rank >= last {
@@ -168,35 +157,83 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
         }
         start = end;
         step++;
-        if step > steps || first_regular >= last {
+        if step > b.steps || first >= last {
             break;
         }
     }
-    let last_flyaway = min(last, yarn.flyaway_fibers);
+}
+
+// Those that may fly away: one loop over all lines of all of them, since threads that run abreast wait for the one with most lines.
+fn draw_flyaways(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
+    let seed = ply_seed(b.segment.seed, ply);
+    let first_slot = ply * (b.yarn.fibers + 1u) + 1u;
     var rank = first;
+    var step = 1u;
+    var begin = 0.0;
     loop {
-        let fiber = fiber_at(yarn, seed, rank);
-        var at = screen_ply(yarn, s, scale.ends, 0.0, ply);
-        var a = fiber_end(yarn, at, fiber, fiber_section(yarn, s, at.yarn, fiber));
-        var begin = 0.0;
-        step = 1u;
-        loop {
-            let t1 = f32(step) / f32(steps);
-            let to = line_end(yarn, s, rates, fiber, scale.radius_pixels, begin, t1);
-            at = screen_ply(yarn, s, scale.ends, to, ply);
-            let b = fiber_end(yarn, at, fiber, fiber_section(yarn, s, at.yarn, fiber));
-            if rank < last_flyaway && is_in_view(a, b) && joined(a.piece, a.period, b.piece, b.period) {
-                draw_between(a, b, begin, to, key_owner(segment, first_slot + rank), parts);
-            }
-            a = b;
-            begin = to;
-            step += select(0u, 1u, to >= t1);
-            if step > steps || rank >= last_flyaway {
-                break;
-            }
+        let fiber = fiber_at(b.yarn, seed, rank);
+        let step_end = f32(step) / f32(b.steps);
+        let line = line_from(b.yarn, b.segment, b.rates, fiber, b.scale.radius_pixels, begin, step_end);
+        let from_end = flyaway_end(b, ply, fiber, begin);
+        let to_end = flyaway_end(b, ply, fiber, line.end);
+        if rank < last && is_in_view(from_end, to_end) && joined(from_end.piece, from_end.period, to_end.piece, to_end.period) {
+            draw_between(from_end, to_end, begin, line.end, key_owner(b.number, first_slot + rank), parts);
         }
-        rank++;
-        if rank >= last_flyaway {
+        begin = line.next;
+        step += select(0u, 1u, begin >= step_end);
+        if step > b.steps {
+            rank++;
+            step = 1u;
+            begin = 0.0;
+        }
+        if rank >= last {
+            break;
+        }
+    }
+}
+
+fn flyaway_end(b: Bundle, ply: u32, fiber: Fiber, t: f32) -> FiberEnd {
+    let at = screen_ply(b.yarn, b.segment, b.scale.ends, t, ply);
+    return fiber_end(b.yarn, at, fiber, fiber_section(b.yarn, b.segment, at.yarn, fiber));
+}
+
+@compute @workgroup_size(64)
+fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
+    frame = frame_buffer;
+    let item = folded_index(workgroup, local, LANES);
+    if item >= dispatch[3] {
+        return;
+    }
+    let found = find_segment(item);
+    let draw = find_draw(found.segment);
+    let yarn = yarns[draws[draw].yarn];
+    let s = segment_at(draw, found.segment);
+    let scale = scale_of(yarn, s);
+    let rates = segment_rates(yarn, s);
+    let bundle = Bundle(yarn, s, found.segment, scale, rates, fiber_steps(yarn, rates, scale.radius_pixels));
+    // Items run over plies first, then over the threads that share a line, then over chunks.
+    let count = most_fibers(yarn, scale);
+    let plies = plies_apart(yarn.plies, count);
+    let turn = found.item / plies;
+    let parts = Parts(1u << found.parts_exponent, turn & ((1u << found.parts_exponent) - 1u));
+    let first = (turn >> found.parts_exponent) * CHUNK;
+    let last = min(first + CHUNK, count);
+    // Those that may fly away have the first ranks.
+    let first_regular = max(first, yarn.flyaway_fibers);
+    let last_flyaway = min(last, yarn.flyaway_fibers);
+    var ply = found.item % plies;
+    loop {
+        draw_regular(bundle, ply, first_regular, last, parts);
+        ply += plies;
+        if ply >= yarn.plies || first_regular >= last {
+            break;
+        }
+    }
+    ply = found.item % plies;
+    loop {
+        draw_flyaways(bundle, ply, first, last_flyaway, parts);
+        ply += plies;
+        if ply >= yarn.plies || first >= last_flyaway {
             break;
         }
     }

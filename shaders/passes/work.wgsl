@@ -4,7 +4,7 @@
 
 // Segments whose work is summed up together.
 const BLOCK: u32 = 256u;
-// Fibers of a ply that one thread draws: they share the yarn's and the ply's frame.
+// Fibers that one thread draws: they share the segment, and its plies' frames.
 const CHUNK: u32 = 16u;
 // Pixels that one thread visits, about: a software driver ends a thread after 65535 turns of its loops, and on a GPU long
 // threads make the others wait. Larger lines are shared by a power of two of threads, which take turns along them.
@@ -14,6 +14,11 @@ const VISITS: f32 = 24000.0;
 const MOST_ITEMS: u32 = 65535u;
 const WORK_BITS: u32 = 24u;
 const WORK_MASK: u32 = 0xffffffu;
+
+// Plies that have threads of their own, for so many fibers each: if there are few, one thread draws all plies.
+fn plies_apart(plies: u32, fibers: u32) -> u32 {
+    return select(plies, 1u, plies * fibers <= CHUNK);
+}
 
 // Power of two of threads that share lines of that length and width in all, pixels.
 fn parts_exponent(length: f32, width: f32) -> u32 {

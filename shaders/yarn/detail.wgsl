@@ -8,7 +8,7 @@ struct Detail {
     flyaways: f32,
 }
 
-// Flyaways of a ply that remain from however far: fewer would be wider than the ply.
+// Flyaways of a ply that remain: fewer would be wider than the ply. Where it is thinner than a pixel itself, they may be as wide as that.
 const LEAST_FLYAWAYS: f32 = 3.0;
 
 fn detail_at(yarn: Yarn, radius_pixels: f32, lod_pixels: f32) -> Detail {
@@ -20,7 +20,7 @@ fn detail_at(yarn: Yarn, radius_pixels: f32, lod_pixels: f32) -> Detail {
     } else if fiber < lod_pixels {
         lambda = fiber / lod_pixels * (ply - lod_pixels) / (ply - fiber);
     }
-    let fewest = min(LEAST_FLYAWAYS / f32(max(yarn.flyaway_fibers, 1u)), 1.0);
+    let fewest = min(max(LEAST_FLYAWAYS * min(ply, 1.0), 1.0) / f32(max(yarn.flyaway_fibers, 1u)), 1.0);
     let flyaways = clamp(fiber / max(lod_pixels, 1e-20), fewest, 1.0);
     return Detail(lambda * lambda, flyaways);
 }

@@ -179,39 +179,46 @@ const SLACK: f32 = 1.01;
 // Least part of a segment that a line has.
 const SHORTEST: f32 = 2e-7;
 
-// Where a line of a fiber that may fly away ends that begins at `begin`, at `end` at the latest. It goes on into the next stage if it can to
-// that one's end. A line ends before a tip and the next begins beyond it; what lies between is not joined.
-fn line_end(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, radius_pixels: f32, begin: f32, end: f32) -> f32 {
-    var reached = begin;
+// A line of a fiber that may fly away: where it ends, and where the next begins, beyond a tip that lies between.
+struct LineEnds {
+    end: f32,
+    next: f32,
+}
+
+// The line that begins at `begin`, and ends at `last` at the latest. It goes on into the next stage if it can to that one's end.
+fn line_from(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, radius_pixels: f32, begin: f32, last: f32) -> LineEnds {
+    let shortest = min(begin + SHORTEST, last);
+    let last_migrated = migration(s, fiber, scalar_value(s.length, last));
     var migrated = migration(s, fiber, scalar_value(s.length, begin));
-    let end_migrated = migration(s, fiber, scalar_value(s.length, end));
-    for (var i = 0u; i < MOST_STAGES; i++) {
+    var reached = begin;
+    var ends = LineEnds(last, last);
+    var number = 0u;
+    loop {
         let stage = stage_after(yarn, s, rates, fiber, migrated);
-        let is_last = stage.end >= end_migrated;
-        var stops = end;
-        if !is_last {
-            stops = parameter_at(s, fiber, stage.end - select(0.0, CLEAR_OF_TIP, stage.at_tip), begin, end);
-        }
-        let line = SLACK * longest_line(radius_pixels * stage.bound);
-        if begin + line < stops {
-            if reached > begin + SHORTEST {
-                return reached;
-            }
-            return begin + (stops - begin) / ceil((stops - begin) / line);
-        }
-        if is_last {
-            return end;
-        }
-        if stage.at_tip {
-            if stops > begin + SHORTEST {
-                return stops;
-            }
-            return max(parameter_at(s, fiber, stage.end + CLEAR_OF_TIP, begin, end), begin + SHORTEST);
+        let is_last = stage.end >= last_migrated;
+        let stops = select(parameter_at(s, fiber, stage.end - select(0.0, CLEAR_OF_TIP, stage.at_tip), begin, last), last, is_last);
+        let longest = SLACK * longest_line(radius_pixels * stage.bound);
+        let is_too_long = begin + longest < stops;
+        if is_too_long {
+            let even = begin + (stops - begin) / ceil((stops - begin) / longest);
+            let end = select(even, reached, reached > shortest);
+            ends = LineEnds(end, end);
+        } else if !is_last && stage.at_tip {
+            let migration_rate = scalar_slope(s.length, stops) * s.turns.z;
+            ends = LineEnds(stops, clamp(stops + 2.0 * CLEAR_OF_TIP / max(migration_rate, 1e-12), shortest, last));
         }
         reached = stops;
         migrated = stage.end;
+        number++;
+        if is_too_long || is_last || stage.at_tip {
+            break;
+        }
+        if number == MOST_STAGES {
+            ends = LineEnds(max(reached, shortest), max(reached, shortest));
+            break;
+        }
     }
-    return max(reached, begin + SHORTEST);
+    return ends;
 }
 
 // The line that a parameter lies on: where it begins and ends.
@@ -220,13 +227,14 @@ fn line_about(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, radius_pixels:
     let step = min(floor(t * steps), steps - 1.0);
     var line = vec2f(step, step + 1.0) / steps;
     if fiber.rank < yarn.flyaway_fibers {
-        let end = line.y;
+        let last = line.y;
         for (var i = 0.0; i < MOST_LINES; i += 1.0) {
-            line.y = line_end(yarn, s, rates, fiber, radius_pixels, line.x, end);
-            if t <= line.y || line.y >= end {
+            let ends = line_from(yarn, s, rates, fiber, radius_pixels, line.x, last);
+            line.y = ends.end;
+            if t <= ends.end || ends.next >= last {
                 break;
             }
-            line.x = line.y;
+            line.x = ends.next;
         }
     }
     return line;

@@ -104,6 +104,7 @@ def test_settings_change_the_picture(draw):
         dict(filter_width=0.0),
         dict(shadow_resolution=64),
         dict(table_resolution=2),
+        dict(sky_directions=1),
         dict(samples=3),
     ):
         assert not np.array_equal(draw(**{"samples": 2, **change})["combined"], plain), change
@@ -183,6 +184,8 @@ def test_statistics(draw, swatch):
         (dict(shadow_resolution=8), "shadow_resolution"),
         (dict(table_resolution=0), "table_resolution"),
         (dict(table_resolution=5), "table_resolution"),
+        (dict(sky_directions=0), "sky_directions"),
+        (dict(sky_directions=9), "sky_directions"),
         (dict(region=(0, 0, 0, 10)), "region"),
         (dict(region=(0, 0, WIDTH + 1, 10)), "region"),
         (dict(region=(1, 2, 3)), "region"),

@@ -10,6 +10,7 @@ use lisle_precompute::TransportStore;
 use crate::aov::{NO_PLANE, Planes};
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
+use crate::frame::MOST_SKY_VIEWS;
 use crate::frame::{FrameBuffers, FrameInput, PictureListener, Recorder};
 use crate::mesh_raster::MeshPipelines;
 use crate::meshes::MeshBuffers;
@@ -286,6 +287,9 @@ fn check(scene: &Scene, settings: &Settings) -> Result<[u32; 4], Error> {
     }
     if !(16..=16384).contains(&settings.shadow_resolution) {
         return invalid("shadow_resolution", format!("{}: expected 16 to 16384 texels", settings.shadow_resolution));
+    }
+    if !(1..=MOST_SKY_VIEWS).contains(&settings.sky_directions) {
+        return invalid("sky_directions", format!("{}: expected 1 to {MOST_SKY_VIEWS}", settings.sky_directions));
     }
     if !(1..=4).contains(&settings.table_resolution) {
         return invalid("table_resolution", format!("{}: expected 1 to 4", settings.table_resolution));

@@ -2,6 +2,7 @@
 
 use lisle_core::scene::Shading;
 
+use crate::frame::MOST_SKY_VIEWS;
 use crate::shader::Model;
 
 use crate::{Aov, Filter};
@@ -47,12 +48,15 @@ pub struct Settings {
     pub filter_width: f32,
     /// Times as many texels along each side of the tables of self-shadow and occlusion, 1 to 4: to tell what their own are to blame for.
     pub table_resolution: u32,
+    /// Directions in which sky and other yarns are seen, over all samples at least, 1 to 8: with few samples, each takes several, so that a
+    /// picture never hangs on one or two.
+    pub sky_directions: u32,
     /// Texels along one side of a shadow map.
     pub shadow_resolution: u32,
     /// Seeds the sample sequence.
     pub seed: u32,
     /// The number of the first sample in its sequence: a picture of samples 0 to 7 and one of 8 to 15 make, each with half the weight, one
-    /// of 0 to 15. (With fewer than 8 they take more directions of the sky each.) Sample 0 is taken at the pixel's centre, through the lens's centre.
+    /// of 0 to 15. (With fewer than `sky_directions` they take more of these each.) Sample 0 is taken at the pixel's centre, through the lens's centre.
     pub first_sample: u32,
     /// Further passes to draw, into [`crate::Image::aovs`].
     pub aovs: Vec<Aov>,
@@ -89,6 +93,7 @@ impl Default for Settings {
             filter: Filter::default(),
             filter_width: 1.5,
             table_resolution: 1,
+            sky_directions: MOST_SKY_VIEWS,
             shadow_resolution: 2048,
             seed: 0,
             first_sample: 0,

@@ -367,7 +367,7 @@ mod tests {
             ("BLOCK", frame::BLOCK.into()),
             ("LANES", frame::LANES.into()),
             ("ROW", frame::ROW.into()),
-            ("MOST_SKY_VIEWS", frame::LEAST_SKY_VIEWS.into()),
+            ("MOST_SKY_VIEWS", frame::MOST_SKY_VIEWS.into()),
             ("TURNS_KEPT", TURNS as f64),
             ("CORE_HOLE", HOLE.into()),
             ("CORE_PLACE_BITS", tables::CORE_PLACE_BITS.into()),

@@ -65,6 +65,7 @@ class Renderer:
         noise_threshold: float = 0.0,
         time_limit_s: float | None = None,
         table_resolution: int = 1,
+        sky_directions: int = 8,
         shadow_resolution: int = 2048,
         seed: int = 0,
         first_sample: int = 0,
@@ -106,6 +107,8 @@ class Renderer:
                 as root of the mean square over what shows anything; looked at after 16, 32, 64 … samples.
             time_limit_s: stops when so many seconds have passed. The picture then depends on the machine's speed.
             table_resolution: times as many texels along each side of the tables of self-shadow and occlusion, 1 to 4.
+            sky_directions: in which sky and other yarns are seen, over all samples at least, 1 to 8: few are quick, and
+                hang on which they are.
             shadow_resolution: texels along one side of a shadow map, 16 to 16384.
             seed: of the sample sequence.
             first_sample: its number in that sequence: samples 0 to 7 and 8 to 15 are two halves of one picture of 16.
@@ -152,6 +155,7 @@ class Renderer:
                 "noise_threshold": noise_threshold,
                 "time_limit_s": time_limit_s,
                 "table_resolution": table_resolution,
+                "sky_directions": sky_directions,
                 "shadow_resolution": shadow_resolution,
                 "seed": seed,
                 "first_sample": first_sample,

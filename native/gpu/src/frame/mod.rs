@@ -36,8 +36,8 @@ pub(crate) const BLOCK: u32 = 256;
 pub(crate) const LANES: u32 = 64;
 pub(crate) const ROW: u32 = 32768;
 
-/// Directions of the sky that a picture takes at least; `MOST_SKY_VIEWS` of `shaders/passes/shade.wgsl`.
-pub(crate) const LEAST_SKY_VIEWS: u32 = 8;
+/// Directions of the sky that one sample takes at most; as in `shaders/passes/shade.wgsl`.
+pub(crate) const MOST_SKY_VIEWS: u32 = 8;
 
 /// Directions of a picture of the sky that a picture takes at least, and one sample of it.
 const LEAST_ENVIRONMENT_SUNS: u32 = 16;
@@ -62,10 +62,10 @@ pub(crate) struct FrameInput<'a> {
 }
 
 impl FrameInput<'_> {
-    /// Directions per sample in which sky or other yarns are seen: few samples take more, so that a picture never hangs on one or two.
+    /// Directions per sample in which sky or other yarns are seen.
     fn sky_views(&self) -> u32 {
         let is_seen = self.scene.ambient != Vec3::ZERO || self.settings.photons() > 0;
-        if !is_seen { 0 } else { LEAST_SKY_VIEWS.div_ceil(self.settings.samples) }
+        if !is_seen { 0 } else { self.settings.sky_directions.div_ceil(self.settings.samples) }
     }
 
     /// The scene's picture of the sky, if any light comes from it.
