@@ -25,7 +25,8 @@ PART = 48
 SUNS = {"front": (0.3, -0.4, -1.0), "back": (0.2, -0.4, 1.0), "grazing": (1.0, -0.2, -0.15)}
 """Directions in which light travels, along the picture's right, its top, and towards the camera."""
 
-LIGHTS = (*SUNS, "sky")
+LIGHTS = (*SUNS, "sky", "image", "gaussian")
+"""Also an even sky, a picture of one, and a spherical Gaussian about the direction of the front."""
 
 MATERIALS = {"light": "cotton", "dark": "rayon-3"}
 
@@ -121,11 +122,37 @@ def sun(direction: tuple[float, float, float]) -> lisle.Sun:
     return lisle.Sun(direction=frame() @ direction, strength=3.0)
 
 
+def image() -> lisle.Environment:
+    """A picture of a sky: dim ground, a horizon brighter than the zenith, and a warm glow where the front's sun is."""
+    height, width = 64, 128
+    polar = np.pi * (np.arange(height)[:, None] + 0.5) / height
+    longitude = 2 * np.pi * (0.5 - (np.arange(width)[None, :] + 0.5) / width)
+    z = np.broadcast_to(np.cos(polar), (height, width))
+    directions = np.stack([np.sin(polar) * np.cos(longitude), np.sin(polar) * np.sin(longitude), z], axis=-1)
+    toward = -(frame() @ SUNS["front"])
+    cosine = np.maximum(directions @ (toward / np.linalg.norm(toward)), 0)[..., None]
+    zenith, horizon, ground = np.array([[0.15, 0.3, 0.7], [0.6, 0.7, 0.8], [0.12, 0.1, 0.08]])
+    sky = zenith + (horizon - zenith) * (1 - np.abs(z[..., None])) ** 2
+    return lisle.Environment(np.where(z[..., None] > 0, sky, ground) + np.array([12.0, 9.0, 6.0]) * cosine**40)
+
+
+def gaussian() -> lisle.Gaussian:
+    """As strong as the suns, from within about half a radian of where the front's is."""
+    return lisle.Gaussian(direction=frame() @ SUNS["front"], strength=3.0, sharpness=5.0)
+
+
 def scene(
     yarns: lisle.Yarns, yarn: lisle.Yarn, material: lisle.Material, view: str, light: str | lisle.Sun
 ) -> lisle.Scene:
     """Yarns under one light."""
-    lights = [light] if isinstance(light, lisle.Sun) else [sun(SUNS[light])] if light in SUNS else []
-    made = lisle.Scene(camera(view), lights, (1.0, 1.0, 1.0) if light == "sky" else (0.0, 0.0, 0.0))
+    lights: list[lisle.Light] = []
+    if isinstance(light, lisle.Sun):
+        lights.append(light)
+    elif light in SUNS:
+        lights.append(sun(SUNS[light]))
+    elif light == "gaussian":
+        lights.append(gaussian())
+    ambient = (1.0, 1.0, 1.0) if light == "sky" else (0.0, 0.0, 0.0)
+    made = lisle.Scene(camera(view), lights, ambient, image() if light == "image" else None)
     made.add(yarns, yarn, material)
     return made
