@@ -148,6 +148,11 @@ struct Yarn {
     through_circle: f32,
     // The core texture's heights once more, with their fibers' places in the order of drawing, two to a word: visibility wants nothing else, and waits for memory.
     core_heights: u32,
+    core_slants: u32,
+    // Of the slant's tangent, from one texture to the next; what that adds to half of what v covers.
+    core_slant_step: f32,
+    core_widening: f32,
+    padding: u32,
 }
 
 struct Material {

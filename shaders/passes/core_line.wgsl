@@ -9,7 +9,7 @@ struct CoreEnd {
     half_width: f32,
     side: vec2f,
     turns: f32,
-    depth_share: f32,
+    aspect: CoreAspect,
     // Distance towards the viewer for h = 1 and v = 1.
     depth_h: f32,
     depth_v: f32,
@@ -27,7 +27,7 @@ fn core_end(c: CorePoint) -> CoreEnd {
         radius_in_pixels(c.half_width, pixel.z),
         side / max(length(side), 1e-20),
         c.turns,
-        c.depth_share,
+        c.aspect,
         core_nearness(c, c.toward, view),
         core_nearness(c, c.across, view),
     );
@@ -38,7 +38,7 @@ struct CoreHit {
     t: f32,
     v: f32,
     turns: f32,
-    depth_share: f32,
+    aspect: CoreAspect,
 }
 
 // Twice the area that a pixel's offset from an end spans with the end's side: its sign tells before from past the end.
@@ -60,12 +60,12 @@ fn core_hit(a: CoreEnd, b: CoreEnd, pixel: vec2f) -> CoreHit {
     // psi jumps by a whole turn once around the ply.
     let difference = b.turns - a.turns;
     let turns = a.turns + t * (difference - round(difference));
-    return CoreHit(past_a >= 0.0 && past_b < 0.0, t, v, turns, mix(a.depth_share, b.depth_share, t));
+    return CoreHit(past_a >= 0.0 && past_b < 0.0, t, v, turns, mix_aspect(a.aspect, b.aspect, t));
 }
 
 fn core_chance(pixel: vec2u) -> CoreChance {
     let hash = hash_combine(hash_combine(pixel.x + 1u, pixel.y), frame.sample_index);
-    return CoreChance(unit_from_hash(hash_combine(hash, 1u)), unit_from_hash(hash));
+    return CoreChance(unit_from_hash(hash_combine(hash, 2u)), unit_from_hash(hash_combine(hash, 1u)), unit_from_hash(hash));
 }
 
 // HOLE of native/precompute/src/core_fiber.rs: the height where there is no fiber.
@@ -97,7 +97,7 @@ struct CoreShown {
 
 // A fiber that is drawn one by one is not shown again: the next layer has what lies behind it. The one that is fading is there or not, by chance.
 fn core_shown(yarn: Yarn, hit: CoreHit, fibers: f32, chance: CoreChance) -> CoreShown {
-    let chosen = core_texture(yarn, hit.depth_share, fibers, chance);
+    let chosen = core_texture(yarn, hit.aspect, fibers, chance);
     let texel = core_texel(yarn, chosen, hit.turns, hit.v);
     let first = core_height_at(yarn, texel);
     var shown = CoreShown(texel, first.height);

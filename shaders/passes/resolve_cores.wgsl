@@ -35,7 +35,12 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     // Where the view ray meets the fiber's surface, as in resolve_fibers.wgsl.
     let nearer = core_nearness(c, below, view) + bulge * min(1.0 / max(length(cross(tangent, view)), 1e-6), MOST_LEAN);
     let position = c.center + c.side * dot(offset, c.side) + view * nearer;
-    return Surface(Tube(p.position, p.radius, p.tangent), c.ply.radial, c.ply.tangential, position, tangent, normal, parts.segment, t);
+    // Seen at a slant, that is in another section than the centre of the ply, in which the ply has turned.
+    let ahead = nearer * dot(view, p.tangent) / max(dot(c.velocity, p.tangent), thinnest);
+    let turned = vec2f(cos(c.ply.angle_rate * ahead), sin(c.ply.angle_rate * ahead));
+    let radial = c.ply.radial * turned.x + c.ply.tangential * turned.y;
+    let tangential = c.ply.tangential * turned.x - c.ply.radial * turned.y;
+    return Surface(Tube(p.position, p.radius, p.tangent), radial, tangential, position, tangent, normal, parts.segment, t);
 }
 
 @compute @workgroup_size(64)

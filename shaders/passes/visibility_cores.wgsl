@@ -4,8 +4,8 @@
 fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
     let orthographic = frame.viewer.w > 0.5;
     let line = make_line(
-        LineEnd(a.position, a.depth, a.half_width * yarn.core_half_width),
-        LineEnd(b.position, b.depth, b.half_width * yarn.core_half_width),
+        LineEnd(a.position, a.depth, a.half_width * core_half_width(yarn, a.aspect)),
+        LineEnd(b.position, b.depth, b.half_width * core_half_width(yarn, b.aspect)),
         orthographic,
     );
     let chord = b.depth - a.depth;
@@ -15,7 +15,7 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
     loop {
         let pixel = walk_pixel(walk, place);
         let hit = core_hit(a, b, vec2f(pixel) + 0.5);
-        if walk_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= yarn.core_half_width {
+        if walk_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= core_half_width(yarn, hit.aspect) {
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
             let height = core_shown(yarn, hit, detail.fibers, core_chance(vec2u(pixel))).height;
             var key = Key(0u, 0u);

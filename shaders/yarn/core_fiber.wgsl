@@ -3,7 +3,25 @@
 // Its texture is a side view of the ply in normalised section coordinates, where the elliptic ply is a disc and its fibers
 // turn rigidly: v runs across, h towards the viewer. Seen from section angle psi the bundle looks as it does from angle 0
 // after a turn by -psi, so that u = theta - psi in turns. (Eq. 3 as printed has inconsistent units.) The texture is several
-// turns long; psi is counted from the yarn's normal, past which the view seldom goes, rather than from the ply's.
+// turns long; psi is counted from the yarn's normal, past which the view seldom goes, rather than from the ply's. Seen at a slant, a ray
+// leaves the section of its row: there are textures for several slants, whose heights and directions are those that the ray meets.
+
+// What a ply is seen from.
+struct CoreAspect {
+    // Tangent between the direction to the viewer and the section, in steps of the textures'.
+    slant: f32,
+    // sin psi |sin psi|: 0 in front of the yarn, where the ply shows its short half axis as its depth, -1 and 1 at its edges, where it shows its long one.
+    side: f32,
+}
+
+fn mix_aspect(a: CoreAspect, b: CoreAspect, share: f32) -> CoreAspect {
+    return CoreAspect(mix(a.slant, b.slant, share), mix(a.side, b.side, share));
+}
+
+// Half of what v covers.
+fn core_half_width(yarn: Yarn, aspect: CoreAspect) -> f32 {
+    return yarn.core_half_width + yarn.core_widening * abs(aspect.slant);
+}
 
 struct CorePoint {
     center: vec3f,
@@ -18,8 +36,8 @@ struct CorePoint {
     facing_squared: f32,
     // u, continuous along a segment but for jumps by whole turns.
     turns: f32,
-    // Squared sine of psi: how deep the ply is in this view, from 0 (its short half axis) to 1 (its long one).
-    depth_share: f32,
+    // Which of the textures shows it.
+    aspect: CoreAspect,
     ply: PlyPoint,
     fiber_rate: f32,
 }
@@ -61,14 +79,16 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
     let from_normal = atan2(dot(view, p.binormal), dot(view, p.normal)) / TAU - ply_turns;
     let whole = round(from_normal - psi);
     c.turns = yarn.fiber_sign * (s.fiber_turns + p.length * s.turns.y) + start - psi - whole;
-    c.depth_share = min(seen_from.y * seen_from.y, 1.0);
+    let last_slant = 0.5 * f32(yarn.core_slants - 1u);
+    c.aspect.slant = clamp(dot(view, p.tangent) / (section_length * yarn.core_slant_step), -last_slant, last_slant);
+    c.aspect.side = select(sign(seen_from.y), clamp(seen_from.y * abs(seen_from.y), -1.0, 1.0), seen_from.x > 0.0);
     c.fiber_rate = TAU * yarn.fiber_sign * p.length_rate * s.turns.y;
     return c;
 }
 
 // Which of the textures to look into, and what to leave out there.
 struct CoreTexture {
-    // One of the two nearest, by chance.
+    // The number of a slant and view: of the nearest ones, by chance.
     view: u32,
     // The last one that holds all fibers that are not drawn one by one.
     layer: u32,
@@ -77,14 +97,22 @@ struct CoreTexture {
     drawn_share: f32,
 }
 
-// Two numbers in [0, 1).
+// Numbers in [0, 1).
 struct CoreChance {
+    slant: f32,
     view: f32,
     fiber: f32,
 }
 
-fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -> CoreTexture {
-    let last_view = f32(yarn.core_views - 1u);
+// One of the two numbers nearest to a place from -1 to 1 among as many, by chance.
+fn core_choice(place: f32, count: u32, chance: f32) -> u32 {
+    let last = f32(count - 1u);
+    return u32(clamp(floor(0.5 * last * (place + 1.0) + chance), 0.0, last));
+}
+
+fn core_texture(yarn: Yarn, aspect: CoreAspect, fibers: f32, chance: CoreChance) -> CoreTexture {
+    let slant = core_choice(2.0 * aspect.slant / f32(max(yarn.core_slants, 2u) - 1u), yarn.core_slants, chance.slant);
+    let view = core_choice(aspect.side, yarn.core_views, chance.view);
     // Layer l holds the fibers from the share (l / layers)^2 on.
     let layers = f32(yarn.core_layers);
     let layer = min(floor(sqrt(fibers) * layers), layers - 1.0);
@@ -92,7 +120,7 @@ fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -
     let end = (layer + 1.0) * (layer + 1.0);
     let all = layers * layers;
     return CoreTexture(
-        u32(clamp(floor(depth_share * last_view + chance.view), 0.0, last_view)),
+        slant * yarn.core_views + view,
         u32(layer),
         (end - begin) / all * f32(yarn.fibers),
         (fibers * all - begin) / (end - begin),
@@ -102,7 +130,9 @@ fn core_texture(yarn: Yarn, depth_share: f32, fibers: f32, chance: CoreChance) -
 // A texel's number in the texture.
 fn core_texel(yarn: Yarn, texture: CoreTexture, turns: f32, v: f32) -> u32 {
     let u_texel = min(u32(fract(turns / f32(yarn.core_turns)) * f32(yarn.core_length)), yarn.core_length - 1u);
-    let v_share = 0.5 + 0.5 * v / yarn.core_half_width;
+    let slant = abs(f32(texture.view / yarn.core_views) - 0.5 * f32(yarn.core_slants - 1u));
+    let half_width = core_half_width(yarn, CoreAspect(slant, 0.0));
+    let v_share = 0.5 + 0.5 * v / half_width;
     let v_texel = u32(clamp(v_share * f32(yarn.core_width), 0.0, f32(yarn.core_width - 1u)));
     let row = (texture.view * yarn.core_layers + texture.layer) * yarn.core_length + u_texel;
     return row * yarn.core_width + v_texel;

@@ -151,6 +151,10 @@ shared! {
         seen_sky_size: u32,
         through_circle: f32,
         core_heights: u32,
+        core_slants: u32,
+        core_slant_step: f32,
+        core_widening: f32,
+        padding: u32,
     }
     Material {
         color_r: Vec3,

@@ -112,7 +112,7 @@ impl YarnTables {
             core_table,
             core_length: core.length as u32,
             core_width: core.width as u32,
-            core_half_width: core.half_width,
+            core_half_width: core.half_width[0],
             shadow_table,
             shadow_slices: tables.self_shadow.slices as u32,
             shadow_size: tables.self_shadow.size as u32,
@@ -130,6 +130,10 @@ impl YarnTables {
             seen_sky_size: tables.self_shadow.seen_sky_size as u32,
             through_circle: tables.self_shadow.through_circle,
             core_heights,
+            core_slants: core.slants as u32,
+            core_slant_step: core.slant_step,
+            core_widening: core.half_width[1],
+            ..Default::default()
         };
         words.0.shrink_to_fit();
         Self { words, kind }
@@ -405,11 +409,11 @@ mod tests {
             let height = |texel: usize| f64::from(stored(texel) >> CORE_PLACE_BITS) / 2047.0 * 4.0 - 2.0;
             assert!((0..core.texels.len()).all(|k| (height(k) - f64::from(core.texels[k][0])).abs() < 0.001));
             assert!((0..core.texels.len()).any(|k| (height(k) - f64::from(core.texels[0][0])).abs() > 0.1));
-            // Layer 2 has the fibers from 4/36 on, layer 3 those from 9/36.
+            // Layer 2 has the fibers from 4/25 on, layer 3 those from 9/25.
             let of_layer = core.length * core.width;
             for k in 2 * of_layer..3 * of_layer {
                 let rank = f64::from(core.ranks[k]);
-                let share = (rank / f64::from(yarn.fibers_per_ply) - 4.0 / 36.0) / (5.0 / 36.0);
+                let share = (rank / f64::from(yarn.fibers_per_ply) - 4.0 / 25.0) / (5.0 / 25.0);
                 let place = f64::from(stored(k) & 31) / 31.0;
                 assert!((share < 1.0 && (place - share).abs() <= 1.0 / 31.0) || (share >= 1.0 && place == 1.0));
             }
