@@ -10,7 +10,7 @@ from . import painting
 from .screen import Screen
 from .snapshot import Snapshot
 
-WAIT_S = 0.075
+WAIT_S = 0.07
 """How long a redraw waits for the first picture of a new view; what comes later gets a redraw of its own."""
 
 _numbers = itertools.count()

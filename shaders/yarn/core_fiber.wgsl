@@ -88,7 +88,8 @@ fn core_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32, viewer: vec4f) -> 
 
 // Which of the textures to look into, and what to leave out there.
 struct CoreTexture {
-    // The number of a slant and view: of the nearest ones, by chance.
+    // Of the nearest ones, by chance.
+    slant: u32,
     view: u32,
     // The last one that holds all fibers that are not drawn one by one.
     layer: u32,
@@ -120,7 +121,8 @@ fn core_texture(yarn: Yarn, aspect: CoreAspect, fibers: f32, chance: CoreChance)
     let end = (layer + 1.0) * (layer + 1.0);
     let all = layers * layers;
     return CoreTexture(
-        slant * yarn.core_views + view,
+        slant,
+        view,
         u32(layer),
         (end - begin) / all * f32(yarn.fibers),
         (fibers * all - begin) / (end - begin),
@@ -130,10 +132,10 @@ fn core_texture(yarn: Yarn, aspect: CoreAspect, fibers: f32, chance: CoreChance)
 // A texel's number in the texture.
 fn core_texel(yarn: Yarn, texture: CoreTexture, turns: f32, v: f32) -> u32 {
     let u_texel = min(u32(fract(turns / f32(yarn.core_turns)) * f32(yarn.core_length)), yarn.core_length - 1u);
-    let slant = abs(f32(texture.view / yarn.core_views) - 0.5 * f32(yarn.core_slants - 1u));
+    let slant = f32(texture.slant) - 0.5 * f32(yarn.core_slants - 1u);
     let half_width = core_half_width(yarn, CoreAspect(slant, 0.0));
     let v_share = 0.5 + 0.5 * v / half_width;
     let v_texel = u32(clamp(v_share * f32(yarn.core_width), 0.0, f32(yarn.core_width - 1u)));
-    let row = (texture.view * yarn.core_layers + texture.layer) * yarn.core_length + u_texel;
+    let row = ((texture.slant * yarn.core_views + texture.view) * yarn.core_layers + texture.layer) * yarn.core_length + u_texel;
     return row * yarn.core_width + v_texel;
 }

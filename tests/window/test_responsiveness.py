@@ -17,7 +17,7 @@ REPEATS = int(os.environ.get("LISLE_REPEATS", "4"))
 BLOCKED_S = 0.1
 """What the interface may wait for at most."""
 
-WAIT_S = 0.06
+WAIT_S = 0.07
 """Of that, what a redraw waits for a first picture: engine.viewport.WAIT_S."""
 
 RECORD = """

@@ -198,11 +198,16 @@ impl<'a> View<'a> {
 
     fn footprint(&self, fiber: usize, rank: usize, u: f64) -> Footprint {
         const NEWTON_STEPS: usize = 4;
+        // Of a fiber's radius: nearer, a step changes nothing that is seen.
+        const CLOSE: f64 = 1e-3;
         let center = self.center();
         let mut at = self.point(fiber, u, 0.0);
         let mut toward = 0.0;
         for _ in 0..if self.slant == 0.0 { 0 } else { NEWTON_STEPS } {
             let step = (at.position - center).x - toward;
+            if step.abs() < CLOSE * self.yarn.fiber_radius {
+                break;
+            }
             toward += step / (1.0 - self.slant * at.rate.x).max(LEAST_FORESHORTENING);
             at = self.point(fiber, u, toward * self.slant);
         }
