@@ -2,7 +2,7 @@
 // fibers that its level of detail asks for. A scan over blocks (scan.wgsl) turns the counts into positions, so that the order of work,
 // and with it everything that follows, depends on geometry alone.
 
-// Dispatch of the visibility pass, and at 5 the number of (segment, fiber) pairs to draw.
+// Dispatch of the visibility pass; at 5 the number of (segment, fiber) pairs to draw, at 6 that of their lines, in two words.
 @group(0) @binding(14) var<storage, read_write> dispatch: array<atomic<u32>, 8>;
 
 var<workgroup> sums: array<u32, BLOCK>;
@@ -17,6 +17,13 @@ fn outside(plane: vec4f, hull: array<vec3f, 4>, radius: f32) -> bool {
         }
     }
     return true;
+}
+
+fn add_lines(lines: u32) {
+    let before = atomicAdd(&dispatch[6], lines);
+    if before + lines < before {
+        atomicAdd(&dispatch[7], 1u);
+    }
 }
 
 struct Work {
@@ -51,7 +58,9 @@ fn work_of(segment: u32) -> Work {
     // At least one item, by which the core pass knows that the segment is in view.
     let items = plies_apart(yarn.plies, count) * max(1u, (count + CHUNK - 1u) / CHUNK);
 
-    let lines = lines_about(yarn, segment_rates(yarn, s), scale.radius_pixels);
+    let rates = segment_rates(yarn, s);
+    add_lines(yarn.plies * count * fiber_steps(yarn, rates, scale.radius_pixels));
+    let lines = lines_about(yarn, rates, scale.radius_pixels);
     let width = 2.0 * yarn.fiber_radius * scale.radius_pixels + 2.0;
     let chord = length(p2 - p1) * scale.radius_pixels / max(min(s.radius.x, s.end.w), 1e-30);
     let length = min(1.5 * chord, 2.0 * f32(frame.size.x + frame.size.y)) + lines * width;

@@ -164,7 +164,7 @@ def test_defaults_draw(renderer, swatch):
 def test_statistics(draw, swatch):
     statistics = draw().statistics
     assert statistics["segments"] == len(swatch.points) - len(swatch)
-    assert statistics["fiber_segments"] > 0
+    assert statistics["fiber_lines"] >= statistics["fiber_segments"] > 0
     assert statistics["gpu_bytes"] >= statistics["knot_bytes"] > 0
     assert statistics["adapter"]
 

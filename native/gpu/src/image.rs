@@ -37,6 +37,8 @@ pub struct Statistics {
     pub segments: u64,
     /// (segment, fiber) pairs drawn per sample, over all tiles.
     pub fiber_segments: u64,
+    /// Lines that these are drawn with; loops and hairs may take a few more.
+    pub fiber_lines: u64,
     /// Bytes of GPU memory of control points and all that belongs to each of them.
     pub knot_bytes: u64,
     /// Bytes of all GPU buffers.

@@ -118,6 +118,33 @@ fn coarse_lines_are_rejected_by_the_same_check() {
     }
 }
 
+/// Lines that each fiber takes of each segment that is drawn, of a yarn whose radius is `zoom` pixels.
+fn lines_a_segment(object: &Object, zoom: f64) -> f64 {
+    let statistics = draw(&scene(vec![object.clone()], camera(zoom, target(object))), &exact(SIZE)).statistics;
+    statistics.fiber_lines as f64 / statistics.fiber_segments as f64
+}
+
+#[test]
+fn lines_are_no_more_than_a_view_needs() {
+    let yarn = without_flyaways(preset("cotton-1"));
+    let of = |knots| object(&yarns_of(curves::wave(14.0, 0.9, knots), false, 0.12), &yarn);
+    let [dense, knitted, sparse] = [1400, 140, 15].map(of);
+    let at = |object: &Object| ZOOMS.map(|zoom| lines_a_segment(object, zoom));
+    let (dense, knitted, sparse) = (at(&dense), at(&knitted), at(&sparse));
+    println!("lines a segment at {ZOOMS:?} px: {dense:.2?} of 1400 knots, {knitted:.2?} of 140, {sparse:.2?} of 15");
+    // Where knots alone are near enough to each other, nothing comes between them.
+    assert_eq!(dense[..4], [1.0; 4]);
+    assert_eq!(knitted[0], 1.0);
+    // Then a chord is as long as a quarter of a pixel lets it be, whatever the knots: lines grow with the square root of the size on the screen,
+    for (name, lines) in [("140", knitted), ("15", sparse)] {
+        let growth = lines[4] / lines[3];
+        assert!((growth / (300.0f64 / 64.0).sqrt() - 1.0).abs() < 0.25, "{growth} of {name} knots");
+    }
+    // and a curve of a tenth of the knots takes ten times as many of each segment.
+    let share = sparse[3] / knitted[3];
+    assert!((7.0..13.0).contains(&share), "{share}");
+}
+
 /// A yarn of few fibers, all of them loops and hairs, some pixels wide.
 fn astray(name: &str, zoom: f64) -> Object {
     let yarn = preset(name);

@@ -126,6 +126,7 @@ fn statistics<'py>(py: Python<'py>, statistics: &Statistics) -> PyResult<Bound<'
     result.set_item("adapter", &statistics.adapter)?;
     result.set_item("segments", statistics.segments)?;
     result.set_item("fiber_segments", statistics.fiber_segments)?;
+    result.set_item("fiber_lines", statistics.fiber_lines)?;
     result.set_item("knot_bytes", statistics.knot_bytes)?;
     result.set_item("gpu_bytes", statistics.gpu_bytes)?;
     result.set_item("uploaded_bytes", statistics.uploaded_bytes)?;

@@ -89,6 +89,13 @@ fn bits_for(count: u32) -> u32 {
     32 - count.saturating_sub(1).leading_zeros()
 }
 
+/// What the first sample draws, over all tiles so far.
+#[derive(Default)]
+struct Work {
+    fiber_segments: u64,
+    fiber_lines: u64,
+}
+
 /// Who waits for a picture.
 pub(crate) type PictureListener = Listener<Result<Image, Error>>;
 
@@ -105,7 +112,7 @@ pub(crate) struct Recorder<'a> {
     timer: Timer,
     /// Lights whose shadows are already drawn and stay.
     static_lights: bool,
-    fiber_segments: u64,
+    work: Work,
     /// What the sample sees.
     moment: Moment,
     mesh_places: MeshPlaces,
@@ -179,7 +186,7 @@ impl<'a> Recorder<'a> {
             filter: PixelFilter::new(settings.filter, settings.filter_width),
             timer: Timer::new(gpu),
             static_lights: false,
-            fiber_segments: 0,
+            work: Work::default(),
             first_view: moment.view,
             moment,
             mesh_places: MeshPlaces::new(),
@@ -319,7 +326,8 @@ impl<'a> Recorder<'a> {
             samples: fewest,
             adapter: self.gpu.info.name.clone(),
             segments: self.moment.draws.real_segments,
-            fiber_segments: self.fiber_segments,
+            fiber_segments: self.work.fiber_segments,
+            fiber_lines: self.work.fiber_lines,
             knot_bytes: self.input.buffers.knot_bytes() + self.frame.segment_work.size(),
             gpu_bytes: self.input.buffers.knot_bytes()
                 + self.input.buffers.table_bytes()
@@ -405,8 +413,11 @@ impl<'a> Recorder<'a> {
         self.gpu.finish()?;
         self.timer.collect(self.gpu)?;
         if cull {
-            let fiber_segments = self.check_work()?;
-            self.fiber_segments += if index == 0 { fiber_segments } else { 0 };
+            let work = self.check_work()?;
+            if index == 0 {
+                self.work.fiber_segments += work.fiber_segments;
+                self.work.fiber_lines += work.fiber_lines;
+            }
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::Recorder;
+use super::{Recorder, Work};
 use crate::aov::NO_PLANE;
 use crate::{Aov, Error, Image, Labels, Scene, aov, cryptomatte};
 
@@ -34,15 +34,15 @@ impl Recorder<'_> {
     }
 
     /// Fiber segments that the last cull has found.
-    pub(super) fn check_work(&self) -> Result<u64, Error> {
+    pub(super) fn check_work(&self) -> Result<Work, Error> {
         if self.uniform.segment_count == 0 {
-            return Ok(0);
+            return Ok(Work::default());
         }
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&self.read(&[(&self.frame.dispatch, 32)])?);
         if words[4] != 0 {
             return Err(Error::input("scene", "more than 4.29 billion fiber segments are visible in one picture"));
         }
-        Ok(u64::from(words[5]))
+        Ok(Work { fiber_segments: words[5].into(), fiber_lines: u64::from(words[6]) | u64::from(words[7]) << 32 })
     }
 
     /// Ids of all draws in the mattes: by object, by material.
