@@ -3,6 +3,19 @@
 
 @group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
 
+// Direction of a yarn `ahead` of where it is `tangent`, as it bends there; no farther than half way round a corner.
+fn bent(tangent: vec3f, bending: vec3f, ahead: f32) -> vec3f {
+    let most = 1.0 / max(length(bending), 1e-20);
+    return normalize(tangent + bending * clamp(ahead, -most, most));
+}
+
+// What a vector becomes that turns with an axis, without turning about it.
+fn carried(v: vec3f, axis: vec3f, new_axis: vec3f) -> vec3f {
+    let turning = cross(axis, new_axis);
+    let once = cross(turning, v);
+    return v + once + cross(turning, once) / (1.0 + dot(axis, new_axis));
+}
+
 fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u) -> Surface {
     let step = parts.place;
     let scale = scale_of(yarn, s);
@@ -29,18 +42,23 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     let axis = below - c.across * (surface.offset * radius / max(c.half_width, thinnest));
     let winding = (c.toward * slopes.x + c.across * slopes.y) * c.fiber_rate;
     let turning = c.ply.radial_rate * dot(axis, c.ply.radial) + c.ply.tangential_rate * dot(axis, c.ply.tangential);
-    let tangent = normalize(c.velocity + turning + winding);
+    let straight = normalize(c.velocity + turning + winding);
     let view = direction_to_viewer(frame.viewer, c.center);
-    let normal = fiber_normal(tangent, c.side, view, surface.offset);
     // Where the view ray meets the fiber's surface, as in resolve_fibers.wgsl.
-    let nearer = core_nearness(c, below, view) + bulge * min(1.0 / max(length(cross(tangent, view)), 1e-6), MOST_LEAN);
+    let nearer = core_nearness(c, below, view) + bulge * min(1.0 / max(length(cross(straight, view)), 1e-6), MOST_LEAN);
     let position = c.center + c.side * dot(offset, c.side) + view * nearer;
-    // Seen at a slant, that is in another section than the centre of the ply, in which the ply has turned.
-    let ahead = nearer * dot(view, p.tangent) / max(dot(c.velocity, p.tangent), thinnest);
+    // Seen at a slant, that is in another section than the centre of the ply, in which the ply has turned and the yarn has bent.
+    let speed = max(dot(c.velocity, p.tangent), thinnest);
+    let bending = -(p.normal * dot(p.normal_rate, p.tangent) + p.binormal * dot(p.binormal_rate, p.tangent));
+    let ahead = nearer * dot(view, bent(p.tangent, bending, nearer * dot(view, p.tangent) / speed)) / speed;
+    let axis_tangent = bent(p.tangent, bending, ahead);
     let turned = vec2f(cos(c.ply.angle_rate * ahead), sin(c.ply.angle_rate * ahead));
-    let radial = c.ply.radial * turned.x + c.ply.tangential * turned.y;
-    let tangential = c.ply.tangential * turned.x - c.ply.radial * turned.y;
-    return Surface(Tube(p.position, p.radius, p.tangent), radial, tangential, position, tangent, normal, parts.segment, t);
+    let radial = carried(c.ply.radial * turned.x + c.ply.tangential * turned.y, p.tangent, axis_tangent);
+    let tangential = carried(c.ply.tangential * turned.x - c.ply.radial * turned.y, p.tangent, axis_tangent);
+    let tangent = carried(straight, p.tangent, axis_tangent);
+    let normal = fiber_normal(tangent, c.side, view, surface.offset);
+    let tube = Tube(p.position + (p.velocity + 0.5 * ahead * p.acceleration) * ahead, p.radius, axis_tangent);
+    return Surface(tube, radial, tangential, position, tangent, normal, parts.segment, t);
 }
 
 @compute @workgroup_size(64)
