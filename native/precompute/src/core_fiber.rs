@@ -21,7 +21,7 @@ const SLANTS: usize = 5;
 const VIEWS: usize = 7;
 const LAYERS: usize = 5;
 const LENGTH: usize = 48 * TURNS;
-const WIDTH: usize = 48;
+const WIDTH: usize = 64;
 
 /// Rows from one to the next that tell how wide a texture is.
 const WIDEST_STRIDE: usize = 8;
