@@ -3,10 +3,14 @@
 
 @group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
 
+// Segments; where points repeat, they may have no length at all.
+const MOST_AHEAD: f32 = 1e3;
+
 // Direction of a yarn `ahead` of where it is `tangent`, as it bends there; no farther than half way round a corner.
 fn bent(tangent: vec3f, bending: vec3f, ahead: f32) -> vec3f {
     let most = 1.0 / max(length(bending), 1e-20);
-    return normalize(tangent + bending * clamp(ahead, -most, most));
+    let direction = tangent + bending * clamp(ahead, -most, most);
+    return direction / max(length(direction), 1e-20);
 }
 
 // What a vector becomes that turns with an axis, without turning about it.
@@ -48,9 +52,10 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     let nearer = core_nearness(c, below, view) + bulge * min(1.0 / max(length(cross(straight, view)), 1e-6), MOST_LEAN);
     let position = c.center + c.side * dot(offset, c.side) + view * nearer;
     // Seen at a slant, that is in another section than the centre of the ply, in which the ply has turned and the yarn has bent.
-    let speed = max(dot(c.velocity, p.tangent), thinnest);
+    let per_length = 1.0 / max(dot(c.velocity, p.tangent), thinnest);
     let bending = -(p.normal * dot(p.normal_rate, p.tangent) + p.binormal * dot(p.binormal_rate, p.tangent));
-    let ahead = nearer * dot(view, bent(p.tangent, bending, nearer * dot(view, p.tangent) / speed)) / speed;
+    let about = nearer * per_length * dot(view, p.tangent);
+    let ahead = clamp(nearer * per_length * dot(view, bent(p.tangent, bending, about)), -MOST_AHEAD, MOST_AHEAD);
     let axis_tangent = bent(p.tangent, bending, ahead);
     let turned = vec2f(cos(c.ply.angle_rate * ahead), sin(c.ply.angle_rate * ahead));
     let radial = carried(c.ply.radial * turned.x + c.ply.tangential * turned.y, p.tangent, axis_tangent);
