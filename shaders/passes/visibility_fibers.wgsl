@@ -172,15 +172,16 @@ fn draw_flyaways(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
     var begin = 0.0;
     loop {
         let fiber = fiber_at(b.yarn, seed, rank);
-        let step_end = f32(step) / f32(b.steps);
-        let line = line_from(b.yarn, b.segment, b.rates, fiber, b.scale.radius_pixels, begin, step_end);
-        let from_end = flyaway_end(b, ply, fiber, begin);
-        let to_end = flyaway_end(b, ply, fiber, line.end);
+        let ends = vec2f(f32(step - 1u), f32(step)) / f32(b.steps);
+        let lines = step_lines(b.yarn, b.segment, b.rates, fiber, b.scale.radius_pixels, ends.x, ends.y);
+        let line = line_from(b.segment, fiber, lines, begin);
+        let from_end = flyaway_end(b, ply, fiber, lines, begin);
+        let to_end = flyaway_end(b, ply, fiber, lines, line.end);
         if rank < last && is_in_view(from_end, to_end) && joined(from_end.piece, from_end.period, to_end.piece, to_end.period) {
             draw_between(from_end, to_end, begin, line.end, key_owner(b.number, first_slot + rank), parts);
         }
         begin = line.next;
-        step += select(0u, 1u, begin >= step_end);
+        step += select(0u, 1u, begin >= ends.y);
         if step > b.steps {
             rank++;
             step = 1u;
@@ -192,9 +193,9 @@ fn draw_flyaways(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
     }
 }
 
-fn flyaway_end(b: Bundle, ply: u32, fiber: Fiber, t: f32) -> FiberEnd {
+fn flyaway_end(b: Bundle, ply: u32, fiber: Fiber, lines: StepLines, t: f32) -> FiberEnd {
     let at = screen_ply(b.yarn, b.segment, b.scale.ends, t, ply);
-    return fiber_end(b.yarn, at, fiber, fiber_section(b.yarn, b.segment, at.yarn, fiber));
+    return fiber_end(b.yarn, at, fiber, section_in(b.yarn, b.segment, at.yarn, fiber, period_on(b.segment, fiber, lines, at.yarn.length)));
 }
 
 @compute @workgroup_size(64)

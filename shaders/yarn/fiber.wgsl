@@ -216,12 +216,27 @@ fn section_of(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber, profile: Profi
     return f;
 }
 
-fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
-    let migrated = migration(s, fiber, p.length);
-    let whole = floor(migrated);
+// One of a fiber's periods.
+struct PeriodAt {
+    period: Period,
+    // Modulo those of a closed curve.
+    number: u32,
+    // Periods from that in which the segment begins.
+    whole: f32,
+}
+
+fn period_at(yarn: Yarn, s: Segment, fiber: Fiber, whole: f32) -> PeriodAt {
     let number = wrapped_period(s.period + u32(whole), s.closed_periods);
-    let period = fiber_period(yarn, s.periods_per_turn, fiber, hash_combine(fiber.hash, number));
-    return section_of(yarn, s, p, fiber, fiber_profile(yarn, fiber, period, migrated - whole), number);
+    return PeriodAt(fiber_period(yarn, s.periods_per_turn, fiber, hash_combine(fiber.hash, number)), number, whole);
+}
+
+fn section_in(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber, at: PeriodAt) -> FiberSection {
+    let phase = migration(s, fiber, p.length) - at.whole;
+    return section_of(yarn, s, p, fiber, fiber_profile(yarn, fiber, at.period, phase), at.number);
+}
+
+fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
+    return section_in(yarn, s, p, fiber, period_at(yarn, s, fiber, floor(migration(s, fiber, p.length))));
 }
 
 // Of a fiber that never flies away: the same, and much less to do.

@@ -10,8 +10,10 @@ const CHORD_ERROR: f32 = 0.25;
 const MOST_STEPS: u32 = 128u;
 const MOST_LINES: f32 = 1024.0;
 
-// However small the yarn on the screen, a step turns by no more than this (radians): its depth is a cubic.
+// However small the yarn on the screen, a step turns by no more than this (radians): its depth is a cubic; and migrates by less than a period, so
+// that it lies in two of them at most.
 const MOST_TURNING: f32 = 2.0;
+const MOST_MIGRATION: f32 = 6.0;
 
 // Rates of a segment's plies, fibers and migration, radians; plies and fibers with their sign. At their largest.
 struct Rates {
@@ -81,10 +83,10 @@ fn hair_bound(yarn: Yarn, rates: Rates, period: Period) -> f32 {
         + 12.0 * yarn.fiber_radius * along * along;
 }
 
-// Where a hair has left its ply, the fiber begins anew.
-fn beyond_bound(yarn: Yarn, rates: Rates, fiber: Fiber, width: f32) -> f32 {
+// Where a hair has left its ply, the fiber begins anew: of its width alone.
+fn regrowth_bound(yarn: Yarn, rates: Rates, width: f32) -> f32 {
     let along = rates.migration / (TAU * regrowth(width));
-    return wander_bound(yarn, rates, fiber.radius * yarn.r_min, fiber.radius) + 6.0 * yarn.fiber_radius * along * along;
+    return 6.0 * yarn.fiber_radius * along * along;
 }
 
 // Turning of a fiber about the yarn's axis along the segment, as seen from there: about its ply and with it.
@@ -94,7 +96,8 @@ fn turning(rates: Rates) -> f32 {
 
 // Steps of a segment, and the longest line in units of it, for a bound in pixels.
 fn steps_for(rates: Rates, bound_pixels: f32) -> u32 {
-    let steps = max(sqrt(bound_pixels / (8.0 * CHORD_ERROR)), turning(rates) / MOST_TURNING);
+    let least = max(turning(rates) / MOST_TURNING, rates.migration / MOST_MIGRATION);
+    let steps = max(sqrt(bound_pixels / (8.0 * CHORD_ERROR)), least);
     return clamp(u32(ceil(steps)), 1u, MOST_STEPS);
 }
 
@@ -125,38 +128,25 @@ fn lines_about(yarn: Yarn, rates: Rates, radius_pixels: f32) -> f32 {
     return steps + share / longest_line(radius_pixels * hair_bound(yarn, rates, hair));
 }
 
-// A part of a fiber's migration period: where it ends, in periods from that in which the segment begins, and its bound in yarn radii.
-struct Stage {
-    end: f32,
-    at_tip: bool,
-    bound: f32,
-}
-
-fn stage_after(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, migrated: f32) -> Stage {
-    let whole = floor(migrated);
-    let hash = hash_combine(fiber.hash, wrapped_period(s.period + u32(whole), s.closed_periods));
-    let period = fiber_period(yarn, s.periods_per_turn, fiber, hash);
-    let inner = fiber.radius * yarn.r_min;
-    if period.kind != PERIOD_HAIR {
-        return Stage(whole + 1.0, false, wander_bound(yarn, rates, inner, period.outer));
-    }
+// Bound of a fiber in one period, between two places of its migration.
+fn period_bound(yarn: Yarn, rates: Rates, fiber: Fiber, at: PeriodAt, from_migrated: f32, to_migrated: f32) -> f32 {
+    let period = at.period;
+    let is_hair = period.kind == PERIOD_HAIR;
+    let wander = wander_bound(yarn, rates, fiber.radius * yarn.r_min, select(period.outer, fiber.radius, is_hair));
     // A hair that rises forwards leaves the ply in the middle of its period and ends before the next; else all is the other way round.
-    let tip = whole + 0.5 + period.direction * period.width;
-    let root = whole + 0.5;
+    let root = at.whole + 0.5;
+    let tip = hair_tip(at);
     let forwards = period.direction > 0.0;
-    if migrated < min(root, tip) {
-        let bound = select(beyond_bound(yarn, rates, fiber, period.width), wander_bound(yarn, rates, inner, fiber.radius), forwards);
-        return Stage(min(root, tip), !forwards, bound);
-    }
-    if migrated < max(root, tip) {
-        return Stage(max(root, tip), forwards, hair_bound(yarn, rates, period));
-    }
-    let bound = select(wander_bound(yarn, rates, inner, fiber.radius), beyond_bound(yarn, rates, fiber, period.width), forwards);
-    return Stage(whole + 1.0, false, bound);
+    let has_hair = is_hair && from_migrated < max(root, tip) && to_migrated > min(root, tip);
+    let has_beyond = is_hair && select((from_migrated < tip), (to_migrated > tip), forwards);
+    let beyond = wander + select(0.0, regrowth_bound(yarn, rates, period.width), has_beyond);
+    return max(beyond, select(0.0, hair_bound(yarn, rates, period), has_hair));
 }
 
-// More stages than a line goes through: a period has three.
-const MOST_STAGES: u32 = 8u;
+// Where a hair ends, in periods from that in which the segment begins.
+fn hair_tip(at: PeriodAt) -> f32 {
+    return at.whole + 0.5 + at.period.direction * at.period.width;
+}
 
 // Periods by which points lie clear of a tip, on either side: rounding must not put them on the other.
 const CLEAR_OF_TIP: f32 = 2e-6;
@@ -173,69 +163,85 @@ fn parameter_at(s: Segment, fiber: Fiber, migrated: f32, low: f32, high: f32) ->
     return t;
 }
 
-// Lines may be this much longer than their bound allows: rounding must not leave a step a line of its own.
-const SLACK: f32 = 1.01;
-
 // Least part of a segment that a line has.
 const SHORTEST: f32 = 2e-7;
 
-// A line of a fiber that may fly away: where it ends, and where the next begins, beyond a tip that lies between.
+// Lines end on a grid; what begins this share of a line before one of its ends goes on to the next.
+const ON_GRID: f32 = 1e-3;
+
+// A fiber that may fly away along one step: the periods in which the step begins and ends, and the lines that it is drawn with, of one length.
+struct StepLines {
+    begin: f32,
+    end: f32,
+    line: f32,
+    first: PeriodAt,
+    second: PeriodAt,
+}
+
+fn step_lines(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, radius_pixels: f32, begin: f32, end: f32) -> StepLines {
+    let a = migration(s, fiber, scalar_value(s.length, begin));
+    let b = migration(s, fiber, scalar_value(s.length, end));
+    let first = period_at(yarn, s, fiber, floor(a));
+    let second = period_at(yarn, s, fiber, floor(b));
+    let bound = max(period_bound(yarn, rates, fiber, first, a, b), period_bound(yarn, rates, fiber, second, a, b));
+    let lines = ceil((end - begin) / longest_line(radius_pixels * bound) - ON_GRID);
+    return StepLines(begin, end, (end - begin) / max(lines, 1.0), first, second);
+}
+
+// The period of a place on the step, by the yarn's length there.
+fn period_on(s: Segment, fiber: Fiber, lines: StepLines, length: f32) -> PeriodAt {
+    if floor(migration(s, fiber, length)) <= lines.first.whole {
+        return lines.first;
+    }
+    return lines.second;
+}
+
+// The first tip beyond a place of the migration, or none: far away.
+fn tip_after(lines: StepLines, migrated: f32) -> f32 {
+    var tip = 3e38;
+    let first = hair_tip(lines.first);
+    let second = hair_tip(lines.second);
+    if lines.second.period.kind == PERIOD_HAIR && second > migrated {
+        tip = second;
+    }
+    if lines.first.period.kind == PERIOD_HAIR && first > migrated {
+        tip = first;
+    }
+    return tip;
+}
+
+// The end of the grid that comes after a parameter.
+fn grid_end(lines: StepLines, t: f32) -> f32 {
+    return min(lines.begin + lines.line * (floor((t - lines.begin) / lines.line + ON_GRID) + 1.0), lines.end);
+}
+
+// The line from a parameter on: where it ends, and where the next begins, beyond a tip that lies between.
 struct LineEnds {
     end: f32,
     next: f32,
 }
 
-// The line that begins at `begin`, and ends at `last` at the latest. It goes on into the next stage if it can to that one's end.
-fn line_from(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, radius_pixels: f32, begin: f32, last: f32) -> LineEnds {
-    let shortest = min(begin + SHORTEST, last);
-    let last_migrated = migration(s, fiber, scalar_value(s.length, last));
-    var migrated = migration(s, fiber, scalar_value(s.length, begin));
-    var reached = begin;
-    var ends = LineEnds(last, last);
-    var number = 0u;
-    loop {
-        let stage = stage_after(yarn, s, rates, fiber, migrated);
-        let is_last = stage.end >= last_migrated;
-        let stops = select(parameter_at(s, fiber, stage.end - select(0.0, CLEAR_OF_TIP, stage.at_tip), begin, last), last, is_last);
-        let longest = SLACK * longest_line(radius_pixels * stage.bound);
-        let is_too_long = begin + longest < stops;
-        if is_too_long {
-            let even = begin + (stops - begin) / ceil((stops - begin) / longest);
-            let end = select(even, reached, reached > shortest);
-            ends = LineEnds(end, end);
-        } else if !is_last && stage.at_tip {
-            let migration_rate = scalar_slope(s.length, stops) * s.turns.z;
-            ends = LineEnds(stops, clamp(stops + 2.0 * CLEAR_OF_TIP / max(migration_rate, 1e-12), shortest, last));
-        }
-        reached = stops;
-        migrated = stage.end;
-        number++;
-        if is_too_long || is_last || stage.at_tip {
-            break;
-        }
-        if number == MOST_STAGES {
-            ends = LineEnds(max(reached, shortest), max(reached, shortest));
-            break;
-        }
-    }
-    return ends;
+fn line_from(s: Segment, fiber: Fiber, lines: StepLines, begin: f32) -> LineEnds {
+    let last = grid_end(lines, begin);
+    let tip = tip_after(lines, migration(s, fiber, scalar_value(s.length, begin)));
+    let stops = parameter_at(s, fiber, tip - CLEAR_OF_TIP, begin, last);
+    let rate = scalar_slope(s.length, stops) * s.turns.z;
+    let beyond = clamp(stops + 2.0 * CLEAR_OF_TIP / max(rate, 1e-12), min(begin + SHORTEST, lines.end), lines.end);
+    let has_tip = tip < migration(s, fiber, scalar_value(s.length, last));
+    return LineEnds(select(last, stops, has_tip), select(last, beyond, has_tip));
 }
 
 // The line that a parameter lies on: where it begins and ends.
 fn line_about(yarn: Yarn, s: Segment, rates: Rates, fiber: Fiber, radius_pixels: f32, t: f32) -> vec2f {
     let steps = f32(fiber_steps(yarn, rates, radius_pixels));
     let step = min(floor(t * steps), steps - 1.0);
-    var line = vec2f(step, step + 1.0) / steps;
-    if fiber.rank < yarn.flyaway_fibers {
-        let last = line.y;
-        for (var i = 0.0; i < MOST_LINES; i += 1.0) {
-            let ends = line_from(yarn, s, rates, fiber, radius_pixels, line.x, last);
-            line.y = ends.end;
-            if t <= ends.end || ends.next >= last {
-                break;
-            }
-            line.x = ends.next;
-        }
+    let ends = vec2f(step, step + 1.0) / steps;
+    if fiber.rank >= yarn.flyaway_fibers {
+        return ends;
     }
-    return line;
+    let lines = step_lines(yarn, s, rates, fiber, radius_pixels, ends.x, ends.y);
+    let last = grid_end(lines, t);
+    let begin = max(last - lines.line, ends.x);
+    let line = line_from(s, fiber, lines, begin);
+    return select(vec2f(begin, line.end), vec2f(line.next, last), t > line.end);
 }

@@ -38,11 +38,19 @@ pub fn measure_views(
 ) -> Result<Vec<Row>, Error> {
     let views = Views::of(yarns);
     let steps = if options.quick { QUICK_STEPS } else { STEPS };
-    let worst = worst(renderer, yarns, &views, steps)?;
     let mut rows = Vec::new();
-    for (view, camera) in [("close", views.close()), ("worst", worst), ("full", views.full())] {
+    for view in ["close", "worst", "full"] {
+        let wanted: Vec<_> = SHADINGS.into_iter().filter(|(.., name)| options.wants_case(view, name)).collect();
+        if wanted.is_empty() {
+            continue;
+        }
+        let camera = match view {
+            "close" => views.close(),
+            "worst" => worst(renderer, yarns, &views, steps)?,
+            _ => views.full(),
+        };
         let mut once_s = None;
-        for (shading, photons, name) in SHADINGS {
+        for (shading, photons, name) in wanted {
             let settings = Settings { transport_photons: photons, ..scene::settings(shading, options.samples) };
             let figures = measure::picture(renderer, &scene::lit(yarns, camera), &settings)?;
             eprintln!("  {view}, {name}: {} s per sample", seconds(figures.wall_s));

@@ -7,6 +7,7 @@ pub const USAGE: &str = "Usage: cargo xtask bench [OPTIONS]
 
   --quick          one sample a figure, a garment of 100,000 points instead of 2 million, a coarse search for the worst view
   --filter TEXT    only models and benchmarks whose name contains TEXT
+  --case TEXT      of each model, only pictures whose view and shading contain TEXT, such as \"full, physical\"
   --samples N      samples per figure (default 4)
   --adapter TEXT   the first adapter whose name contains TEXT
   --help           this text
@@ -18,6 +19,7 @@ Yarn files are read from the folder `yarns` in $LISLE_DATA (default: ../shared/d
 pub struct Options {
     pub quick: bool,
     pub filter: Option<String>,
+    pub case: Option<String>,
     /// At least 1.
     pub samples: u32,
     pub adapter: Option<String>,
@@ -35,15 +37,21 @@ impl Options {
     pub fn wants(&self, name: &str) -> bool {
         self.filter.as_ref().is_none_or(|text| name.contains(text.as_str()))
     }
+
+    /// Whether a picture of a model is to be drawn.
+    pub fn wants_case(&self, view: &str, shading: &str) -> bool {
+        self.case.as_ref().is_none_or(|text| format!("{view}, {shading}").contains(text.as_str()))
+    }
 }
 
 /// Reads the command line.
 pub fn parse(mut parser: Parser) -> Result<Request, lexopt::Error> {
-    let (mut quick, mut filter, mut samples, mut adapter) = (false, None, None, None);
+    let (mut quick, mut filter, mut case, mut samples, mut adapter) = (false, None, None, None, None);
     while let Some(argument) = parser.next()? {
         match argument {
             Arg::Long("quick") => quick = true,
             Arg::Long("filter") => filter = Some(parser.value()?.string()?),
+            Arg::Long("case") => case = Some(parser.value()?.string()?),
             Arg::Long("samples") => samples = Some(parser.value()?.parse::<std::num::NonZeroU32>()?.get()),
             Arg::Long("adapter") => adapter = Some(parser.value()?.string()?),
             Arg::Long("help") | Arg::Short('h') => return Ok(Request::Help),
@@ -51,7 +59,7 @@ pub fn parse(mut parser: Parser) -> Result<Request, lexopt::Error> {
         }
     }
     let samples = samples.unwrap_or(if quick { 1 } else { 4 });
-    Ok(Request::Run(Options { quick, filter, samples, adapter }))
+    Ok(Request::Run(Options { quick, filter, case, samples, adapter }))
 }
 
 #[cfg(test)]
@@ -65,7 +73,7 @@ mod tests {
     #[test]
     fn options_are_read_and_wrong_ones_refused() {
         let options = |quick, filter: Option<&str>, samples| {
-            Request::Run(Options { quick, filter: filter.map(str::to_owned), samples, adapter: None })
+            Request::Run(Options { quick, filter: filter.map(str::to_owned), case: None, samples, adapter: None })
         };
         assert_eq!(parsed(&[]).expect("no options"), options(false, None, 4));
         assert_eq!(parsed(&["--quick", "--filter=glove"]).expect("valid"), options(true, Some("glove"), 1));

@@ -255,6 +255,42 @@ fn yarns_of_several_plies_keep_their_colour_among_levels_of_detail() {
     }
 }
 
+/// Five yarns without flyaways that wave towards the viewer, as those of a weave do, one above the other.
+fn waving(name: &str, material: &str, light: [f64; 3], lod_pixels: f32) -> f64 {
+    const YARNS: u32 = 5;
+    const RADIUS_PIXELS: u32 = 4;
+    let size = [RADIUS_PIXELS * 320, RADIUS_PIXELS * 6 * YARNS];
+    let wave = |k: u32| {
+        // A radius of curvature of 3.2 yarn radii at the crowns.
+        let y = |x: f64| 2.0 * (std::f64::consts::TAU * x / 16.0).cos();
+        let point = |i: u32| f64::from(i) / 2.0 - 165.0 + f64::from(k);
+        (0..661).map(|i| [point(i) as f32, y(point(i)) as f32, (6.0 * (f64::from(k) - 2.0)) as f32]).collect()
+    };
+    let curves = Curves::catmull_rom((0..YARNS).map(wave).collect(), false);
+    let yarns = Arc::new(Yarns::new(curves, Some(1.0)).expect("valid"));
+    let mut object = object(&yarns, &support::without_flyaways(preset(name)));
+    object.material = Arc::new(Material { diffuse_weight: 0.0, ..Material::preset(material).expect("preset") });
+    let height = f64::from(6 * YARNS);
+    let camera = orthographic(looking(DVec3::new(0.0, -20.0, 0.0), DVec3::ZERO), height, size, [0.0, 0.0]);
+    let mut scene = scene(vec![object], camera);
+    scene.ambient = glam::Vec3::ZERO;
+    scene.lights = vec![sun(light, 3.0)];
+    let image = draw(&scene, &Settings { samples: 32, filter_width: 1.5, lod_pixels, ..exact(size) });
+    measure::brightness(&image)
+}
+
+/// Highlights a degree wide are as long on the crown of a bent yarn as its surface there, not as its centre line.
+#[test]
+fn cores_keep_their_colour_where_yarns_bend() {
+    for name in ["cotton-1", "silk-1", "rayon-3"] {
+        for (light_name, light) in [("front", [0.0, 1.0, 0.0]), ("slanted", [0.5, 1.0, -0.3])] {
+            let error = waving(name, "cotton", light, 100.0) / waving(name, "cotton", light, 0.0) - 1.0;
+            println!("{name}, {light_name}: {:+.2} %", 100.0 * error);
+            assert!(error.abs() < 0.95, "{name}, {light_name}: {error}");
+        }
+    }
+}
+
 /// Ten straight yarns without flyaways, one after the other, seen so many radians off the right angle, and what each has of light and of covered area.
 fn slanted(name: &str, material: &str, slant_rad: f64, light: [f64; 3], lod_pixels: f32) -> Vec<[f64; 2]> {
     const YARNS: usize = 10;

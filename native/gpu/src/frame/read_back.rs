@@ -33,7 +33,7 @@ impl Recorder<'_> {
         Ok(data)
     }
 
-    /// Fiber segments that the last cull has found.
+    /// What the last cull has found to draw.
     pub(super) fn check_work(&self) -> Result<Work, Error> {
         if self.uniform.segment_count == 0 {
             return Ok(Work::default());
