@@ -7,7 +7,7 @@
 
 @compute @workgroup_size(64)
 fn classify(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let index = folded_index(workgroup, local, LANES);
     let pixels = frame.size.x * frame.size.y;
     if index >= pixels {

@@ -81,8 +81,7 @@ struct CoreHeight {
 // Bits of a place.
 const CORE_PLACE_BITS: u32 = 5u;
 
-fn core_height_at(yarn: Yarn, texel: u32) -> CoreHeight {
-    let half = (tables[yarn.core_heights + texel / 2u] >> (16u * (texel & 1u))) & 0xffffu;
+fn core_height(half: u32) -> CoreHeight {
     let last_height = f32((1u << (16u - CORE_PLACE_BITS)) - 1u);
     let last_place = f32((1u << CORE_PLACE_BITS) - 1u);
     let place = half & ((1u << CORE_PLACE_BITS) - 1u);
@@ -99,17 +98,12 @@ struct CoreShown {
 fn core_shown(yarn: Yarn, hit: CoreHit, fibers: f32, chance: CoreChance) -> CoreShown {
     let chosen = core_texture(yarn, hit.aspect, fibers, chance);
     let texel = core_texel(yarn, chosen, hit.turns, hit.v);
-    let first = core_height_at(yarn, texel);
-    var shown = CoreShown(texel, first.height);
+    let word = table_word(yarn.core_heights + texel);
+    let first = core_height(word & 0xffffu);
     if (chosen.drawn_share - first.place) * chosen.own_fibers > chance.fiber {
-        if chosen.layer + 1u < yarn.core_layers {
-            shown.texel += yarn.core_length * yarn.core_width;
-            shown.height = core_height_at(yarn, shown.texel).height;
-        } else {
-            shown.height = CORE_HOLE;
-        }
+        return CoreShown(texel + yarn.core_length * yarn.core_width, core_height(word >> 16u).height);
     }
-    return shown;
+    return CoreShown(texel, first.height);
 }
 
 // The visible fiber of a texel: its height, and the offset across it.
@@ -119,11 +113,11 @@ struct CoreSurface {
 }
 
 fn core_surface_at(yarn: Yarn, texel: u32) -> CoreSurface {
-    let values = unpack2x16snorm(tables[yarn.core_table + 2u * texel]);
+    let values = unpack2x16snorm(table_word(yarn.core_table + 2u * texel));
     return CoreSurface(2.0 * values.x, values.y);
 }
 
 // d(h, v) / d theta of the visible fiber.
 fn core_slopes_at(yarn: Yarn, texel: u32) -> vec2f {
-    return yarn.core_slope * unpack2x16snorm(tables[yarn.core_table + 2u * texel + 1u]);
+    return yarn.core_slope * unpack2x16snorm(table_word(yarn.core_table + 2u * texel + 1u));
 }

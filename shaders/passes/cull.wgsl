@@ -73,7 +73,7 @@ fn work_of(segment: u32) -> Work {
 
 @compute @workgroup_size(256)
 fn cull(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let segment = folded_index(workgroup, local, BLOCK);
     var work = Work(0u, 0u);
     if segment < frame.segment_count {

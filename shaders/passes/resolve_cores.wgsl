@@ -68,7 +68,7 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
 
 @compute @workgroup_size(64)
 fn resolve_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let item = folded_index(workgroup, local, RESOLVE_LANES);
     if item >= resolve_dispatch[CORE_LIST + 3u] {
         return;

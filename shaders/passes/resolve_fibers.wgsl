@@ -61,7 +61,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
 
 @compute @workgroup_size(64)
 fn resolve_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let item = folded_index(workgroup, local, RESOLVE_LANES);
     if item >= resolve_dispatch[FIBER_LIST + 3u] {
         return;

@@ -137,7 +137,7 @@ struct MeshLight {
 fn mesh_light(point: MeshPoint) -> MeshLight {
     var sum: MeshLight;
     for (var i = 0u; i < frame.light_count; i++) {
-        let light = lights[i];
+        let light = lights[i + (arrayLength(&knot_radii) >> 28u)];
         let incident = incident_light(light, point.position);
         let cosine = dot(point.normal, incident.direction);
         if cosine <= 0.0 || dot(point.facing, incident.direction) <= 0.0 || all(incident.irradiance <= vec3f(0.0)) {
@@ -170,7 +170,7 @@ fn mesh_light(point: MeshPoint) -> MeshLight {
 
 @compute @workgroup_size(64)
 fn resolve_meshes(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let index = folded_index(workgroup, local, LANES);
     if index >= frame.size.x * frame.size.y {
         return;

@@ -8,7 +8,7 @@ var<workgroup> overflow: atomic<u32>;
 
 @compute @workgroup_size(256)
 fn scan(@builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let blocks = (frame.segment_count + BLOCK - 1u) / BLOCK;
     let chunk = (blocks + BLOCK - 1u) / BLOCK;
     let first = min(local * chunk, blocks);

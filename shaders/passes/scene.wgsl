@@ -2,17 +2,18 @@
 
 // Not a uniform: Mesa 22's software driver compiles a shader anew for every value of a uniform that decides a branch,
 // and keeps them all.
-@group(0) @binding(0) var<storage, read> frame_buffer: Frame;
+@group(0) @binding(0) var<uniform> frame_buffer: array<Frame, 1>;
+fn read_frame() -> Frame { return frame_buffer[arrayLength(&knot_radii) >> 28u]; }
 // Every entry point begins by reading it: inner loops then have it at hand.
 var<private> frame: Frame;
-@group(0) @binding(1) var<storage, read> draws: array<Draw>;
+@group(0) @binding(1) var<uniform> draws: array<Draw, 512>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> knot_positions: array<f32>;
 // Length coordinate, octahedral normal.
 @group(0) @binding(4) var<storage, read> knot_frames: array<vec2u>;
 // Radius and flags, curve.
 @group(0) @binding(5) var<storage, read> knot_radii: array<vec2u>;
-@group(0) @binding(6) var<storage, read> yarns: array<Yarn>;
+@group(0) @binding(6) var<uniform> yarns: array<Yarn, 256>;
 
 // Set on a knot where a segment begins.
 const KNOT_BEGINS_SEGMENT: u32 = 0x10000u;

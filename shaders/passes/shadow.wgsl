@@ -1,7 +1,7 @@
 // How it works: yarns as thick tubes [WuYuksel2018 §4.1], rasterised like fibers into depth maps, one layer of the
 // dispatch (or some that share the work) for each view. Larger is nearer to the light; 0 is empty. Loops are as in visibility_fibers.wgsl.
 
-@group(0) @binding(10) var<storage, read> shadow_views: array<ShadowView>;
+@group(0) @binding(10) var<uniform> shadow_views: array<ShadowView, 512>;
 @group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
 
 struct ShadowPass {
@@ -38,7 +38,7 @@ fn draw_tube(view: ShadowView, line: Line, radii: vec2f, base: u32, parts: Parts
 
 @compute @workgroup_size(64)
 fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let segment = folded_index(workgroup, local, LANES);
     if segment >= frame.segment_count {
         return;

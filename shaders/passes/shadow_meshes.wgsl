@@ -1,7 +1,7 @@
 // How it works: the hardware draws all triangles into depth maps, one instance for each view; each texel keeps the nearest. The lowest
 // bit of a depth tells meshes, which let no light through, from yarns.
 
-@group(0) @binding(10) var<storage, read> shadow_views: array<ShadowView>;
+@group(0) @binding(10) var<uniform> shadow_views: array<ShadowView, 512>;
 @group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
 
 struct MeshShadowVertex {
@@ -12,7 +12,7 @@ struct MeshShadowVertex {
 
 @vertex
 fn mesh_shadow_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) view: u32) -> MeshShadowVertex {
-    frame = frame_buffer;
+    frame = read_frame();
     let triangle = index / 3u;
     let draw = find_mesh(triangle);
     let position = mesh_position(draw, mesh_corner(draw, triangle, index % 3u));
@@ -27,7 +27,7 @@ fn mesh_shadow_vertex(@builtin(vertex_index) index: u32, @builtin(instance_index
 
 @fragment
 fn mesh_shadow_fragment(vertex: MeshShadowVertex) {
-    let side = frame_buffer.shadow_resolution;
+    let side = read_frame().shadow_resolution;
     let texel = vec2u(vertex.clip.xy);
     let view = shadow_views[vertex.view];
     let nearness = clamp(1.0 - (vertex.depth - view.depth_min) * view.depth_scale, 0.0, 1.0);

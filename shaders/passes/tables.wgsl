@@ -1,15 +1,20 @@
 // Precomputed tables of every yarn and material, one after the other.
-@group(0) @binding(8) var<storage, read> tables: array<u32>;
+@group(0) @binding(8) var tables: texture_2d<u32>;
+
+// A power of two.
+const WORDS_IN_ROW: u32 = 4096u;
 
 fn table_word(index: u32) -> u32 {
-    return tables[index];
+    return textureLoad(tables, vec2u(index % WORDS_IN_ROW, index / WORDS_IN_ROW), 0).x;
 }
 
 fn table_value(index: u32) -> f32 {
-    return bitcast<f32>(tables[index]);
+    return bitcast<f32>(table_word(index));
 }
 
+// A row of the fiber table: FiberTable::packed of native/core/src/yarn/table.rs.
 fn fiber_at(yarn: Yarn, ply: PlySeed, rank: u32) -> Fiber {
-    let row = yarn.fiber_table + 4u * rank;
-    return make_fiber(ply, rank, vec4f(table_value(row), table_value(row + 1u), table_value(row + 2u), table_value(row + 3u)));
+    let place = table_word(yarn.fiber_table + 2u * rank);
+    let turns = table_word(yarn.fiber_table + 2u * rank + 1u);
+    return make_fiber(ply, rank, 0x1p-16 * vec3f(vec3u(place, turns, turns >> 16u) & vec3u(0xffffu)), place >> 16u);
 }

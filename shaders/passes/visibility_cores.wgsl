@@ -38,7 +38,7 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
 
 @compute @workgroup_size(64)
 fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let segment = folded_index(workgroup, local, LANES);
     if segment >= frame.segment_count {
         return;

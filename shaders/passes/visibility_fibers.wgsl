@@ -200,7 +200,7 @@ fn flyaway_end(b: Bundle, ply: u32, fiber: Fiber, lines: StepLines, t: f32) -> F
 
 @compute @workgroup_size(64)
 fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_index) local: u32) {
-    frame = frame_buffer;
+    frame = read_frame();
     let item = folded_index(workgroup, local, LANES);
     if item >= dispatch[3] {
         return;

@@ -9,7 +9,7 @@ struct MeshVertex {
 
 @vertex
 fn mesh_vertex(@builtin(vertex_index) index: u32) -> MeshVertex {
-    frame = frame_buffer;
+    frame = read_frame();
     let triangle = index / 3u;
     let draw = find_mesh(triangle);
     let position = mesh_position(draw, mesh_corner(draw, triangle, index % 3u));

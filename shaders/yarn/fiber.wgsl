@@ -57,8 +57,8 @@ fn ply_seed(seed: u32, ply: u32) -> PlySeed {
     );
 }
 
-fn make_fiber(ply: PlySeed, rank: u32, row: vec4f) -> Fiber {
-    return Fiber(rank, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, u32(row.w)));
+fn make_fiber(ply: PlySeed, rank: u32, row: vec3f, number: u32) -> Fiber {
+    return Fiber(rank, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, number));
 }
 
 // The parts of a hair's period: a line never joins the tip to what lies beyond it.

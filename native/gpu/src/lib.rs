@@ -24,6 +24,7 @@ mod tables;
 mod timing;
 mod upload;
 mod waiting;
+mod word_texture;
 
 pub use aov::Aov;
 pub use device::{AdapterInfo, adapters};

@@ -349,7 +349,7 @@ mod tests {
 
     /// Constants that are written both here and in WGSL.
     fn shared_constants() -> Vec<(&'static str, f64)> {
-        use crate::{aov, cryptomatte, frame, layout, tables};
+        use crate::{aov, cryptomatte, frame, layout, tables, word_texture};
         use lisle_precompute::{HALF_WAY, HOLE, SHARED_OVER_WIDTH, TURNS, Transport, TransportSize};
         let size = TransportSize::ALL;
         vec![
@@ -371,6 +371,7 @@ mod tests {
             ("TURNS_KEPT", TURNS as f64),
             ("CORE_HOLE", HOLE.into()),
             ("CORE_PLACE_BITS", tables::CORE_PLACE_BITS.into()),
+            ("WORDS_IN_ROW", word_texture::WORDS_IN_ROW.into()),
             ("HALF_WAY", HALF_WAY),
             ("SHARED_OVER_WIDTH", SHARED_OVER_WIDTH),
             ("TRANSPORT_LIGHT_LONGITUDES", size.light_longitudes as f64),

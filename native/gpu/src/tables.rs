@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec4};
 use lisle_core::scattering::{Material, ScatteringTables, highlight_scale};
 use lisle_core::yarn::{FiberTable, Variate, Yarn};
-use lisle_precompute::{CoreFiber, Tables, Transport, TransportStore};
+use lisle_precompute::{CoreFiber, HOLE, Tables, Transport, TransportStore};
 
 use crate::{Object, Scene, layout};
 
@@ -58,11 +58,8 @@ impl YarnTables {
     pub fn new(yarn: &Yarn, tables: &Tables) -> Self {
         let mut words = Words::default();
         let fibers = FiberTable::new(yarn);
-        let row = |i: usize| {
-            [fibers.radius[i], fibers.angle_turns[i], fibers.migration_turns[i], i as f64].map(|value| value as f32)
-        };
-        let rows = FiberTable::drawing_order(yarn).into_iter().flat_map(row);
-        let fiber_table = words.append(rows);
+        let rows = FiberTable::drawing_order(yarn).into_iter().flat_map(|fiber| fibers.packed(fiber));
+        let fiber_table = words.append_words(rows);
         let core = &tables.core_fiber;
         let core_slope = core.texels.iter().flat_map(|t| [t[2].abs(), t[3].abs()]).fold(f32::MIN_POSITIVE, f32::max);
         let core_table = words.append_words(core.texels.iter().flat_map(|[height, offset, dh, dv]| {
@@ -153,7 +150,7 @@ fn pack_height(height: f32, place: f64) -> u32 {
     (height as u32) << CORE_PLACE_BITS | place as u32
 }
 
-/// Heights and places, two to a word.
+/// Heights and places: of a texel, and in the upper half of the same place in the next layer, or of a hole.
 fn packed_heights(core: &CoreFiber, fibers: u32) -> impl Iterator<Item = u32> {
     let (of_layer, layers) = (core.length * core.width, core.layers as f64);
     let packed = move |texel: usize| {
@@ -161,7 +158,11 @@ fn packed_heights(core: &CoreFiber, fibers: u32) -> impl Iterator<Item = u32> {
         let rank = f64::from(core.ranks[texel]) / f64::from(fibers);
         pack_height(core.texels[texel][0], (rank * layers * layers - layer * layer) / (2.0 * layer + 1.0))
     };
-    (0..core.texels.len()).step_by(2).map(move |texel| packed(texel) | packed(texel + 1) << 16)
+    (0..core.texels.len()).map(move |texel| {
+        let is_last = texel / of_layer % core.layers + 1 == core.layers;
+        let behind = if is_last { pack_height(HOLE, 1.0) } else { packed(texel + of_layer) };
+        packed(texel) | behind << 16
+    })
 }
 
 /// One buffer of tables and the offsets into it.

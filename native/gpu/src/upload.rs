@@ -15,6 +15,7 @@ use crate::device::Gpu;
 use crate::knots::{MovingKnots, RestKnots};
 use crate::layout;
 use crate::tables::{SceneTransport, TableBuffer, TableCache, bound};
+use crate::word_texture::WordTexture;
 use crate::view::Bounds;
 use crate::{Error, Object, Scene};
 
@@ -80,7 +81,7 @@ pub(crate) struct SceneBuffers {
     pub curves: wgpu::Buffer,
     pub yarns: wgpu::Buffer,
     pub material_data: wgpu::Buffer,
-    pub tables: wgpu::Buffer,
+    pub tables: WordTexture,
     pub uploaded_bytes: u64,
 }
 
@@ -123,8 +124,8 @@ pub(crate) fn empty_storage(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::
     }
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: bytes.max(256).next_multiple_of(16),
-        usage: wgpu::BufferUsages::STORAGE
+        size: bytes.max(if ["instances", "lights", "shadow views", "yarn kinds", "materials"].contains(&label) { 65536 } else { 256 }).next_multiple_of(16),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC
             | wgpu::BufferUsages::INDIRECT,
@@ -226,7 +227,7 @@ impl SceneBuffers {
             buffers.transports = wanted;
             buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = storage(gpu, "materials", &tables.materials)?;
-            buffers.tables = storage(gpu, "tables of yarns and materials", &tables.words.0)?;
+            buffers.tables = WordTexture::new(gpu, "tables of yarns and materials", &tables.words.0)?;
             (buffers.kinds, buffers.materials, buffers.table_resolution) = (kinds, materials, table_resolution);
         }
         cache.forget(buffers.kinds.len(), transports.len());
@@ -272,7 +273,7 @@ impl SceneBuffers {
             curves: storage(gpu, "curves", &curves)?,
             yarns: empty_storage(gpu, "yarn kinds", 0)?,
             material_data: empty_storage(gpu, "materials", 0)?,
-            tables: empty_storage(gpu, "tables", 0)?,
+            tables: WordTexture::new(gpu, "tables", &[])?,
             uploaded_bytes: 0,
         };
         let uploaded_bytes = buffers.knot_bytes();
@@ -330,7 +331,7 @@ impl SceneBuffers {
     }
 
     pub fn table_bytes(&self) -> u64 {
-        self.yarns.size() + self.material_data.size() + self.tables.size()
+        self.yarns.size() + self.material_data.size() + self.tables.bytes()
     }
 
     /// The scene's objects as draws of these buffers, with such transforms to the world and places of the sets; `parts` are what

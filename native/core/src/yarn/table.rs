@@ -21,6 +21,9 @@ pub fn acceptance(beta: f64, epsilon: f64) -> f64 {
         .sum()
 }
 
+/// Steps in 1 of what a table holds: whatever reads it, packed or not, has the same numbers.
+const STEPS: f64 = 65536.0;
+
 /// Where the fibers of a ply sit, outermost first, so that a level of detail drops the innermost ones [WuYuksel2018 §5].
 #[derive(Clone, Debug, PartialEq)]
 pub struct FiberTable {
@@ -28,7 +31,7 @@ pub struct FiberTable {
     pub radius: Vec<f64>,
     /// Start angle theta_i, in turns [0, 1).
     pub angle_turns: Vec<f64>,
-    /// Start of the migration, phi_i, in turns [0, 1); independent of the angle, as in [Zhao2016].
+    /// Start of the migration, phi_i, in turns [0, 1); independent of the angle, as in [Zhao2016]. All three are multiples of 2⁻¹⁶.
     pub migration_turns: Vec<f64>,
     /// Share of the disc's uniform samples that were accepted.
     pub acceptance: f64,
@@ -50,6 +53,15 @@ impl FiberTable {
         order
     }
 
+    /// A fiber in two words of 16-bit numbers, the lower half first: radius and number, angle and start of the migration.
+    pub fn packed(&self, fiber: usize) -> [u32; 2] {
+        let code = |value: f64| (value * STEPS) as u32;
+        [
+            code(self.radius[fiber]) | (fiber as u32) << 16,
+            code(self.angle_turns[fiber]) | code(self.migration_turns[fiber]) << 16,
+        ]
+    }
+
     fn draw(yarn: &Yarn, count: usize) -> Self {
         let mut fibers: Vec<[f64; 3]> = Vec::with_capacity(count);
         let mut tried = 0_u32;
@@ -57,7 +69,7 @@ impl FiberTable {
             let draw = |k| unit_from_hash(hash_combine(hash_combine(0x5f1b_e25a, tried), k));
             let radius = draw(0).sqrt();
             if draw(1) < radial_density(radius, yarn.density_beta, yarn.density_epsilon) {
-                fibers.push([radius, draw(2), draw(3)]);
+                fibers.push([radius, draw(2), draw(3)].map(|value| (value * STEPS).floor() / STEPS));
             }
             tried += 1;
         }
@@ -118,6 +130,17 @@ mod tests {
                 assert!(off < bound, "{name}, {count} of {astray}: {off}");
             }
             assert!((mean(&mut (0..astray), 3) - all).abs() > bound, "{name}: the outermost pass as well");
+        }
+    }
+
+    #[test]
+    fn packed_fibers_are_the_same_numbers() {
+        let table = FiberTable::new(&Yarn { fibers_per_ply: 60_000, ..Yarn::preset("rayon-1").expect("preset") });
+        for fiber in [0, 1, 777, 59_999] {
+            let [place, turns] = table.packed(fiber);
+            let value = |word: u32| f64::from(word & 0xffff) / STEPS;
+            assert_eq!((value(place), place >> 16), (table.radius[fiber], fiber as u32));
+            assert_eq!((value(turns), value(turns >> 16)), (table.angle_turns[fiber], table.migration_turns[fiber]));
         }
     }
 

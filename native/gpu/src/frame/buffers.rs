@@ -108,7 +108,7 @@ impl FrameBuffers {
             lights: empty_storage(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
             views: empty_storage(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
             shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
-            uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::STORAGE),
+            uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::UNIFORM),
             pass_uniform: uniform("pass", 16, wgpu::BufferUsages::UNIFORM),
             aovs: empty_storage(gpu, "passes", 4 * capacity.planes * capacity.pixels)?,
             meshes: uniform("meshes of a sample", size_of::<layout::Meshes>(), wgpu::BufferUsages::STORAGE),

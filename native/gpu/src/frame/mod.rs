@@ -243,7 +243,7 @@ impl<'a> Recorder<'a> {
 
     fn bindings(&self) -> Bindings<'a> {
         let (scene, frame) = (self.input.buffers, self.frame);
-        let buffers: [(u32, &wgpu::Buffer); 31] = [
+        let buffers: [(u32, &wgpu::Buffer); 30] = [
             (0, &frame.uniform),
             (1, &frame.draws),
             (2, &scene.curves),
@@ -252,7 +252,6 @@ impl<'a> Recorder<'a> {
             (5, &scene.radii),
             (6, &scene.yarns),
             (7, &scene.material_data),
-            (8, &scene.tables),
             (9, &frame.lights),
             (10, &frame.views),
             (11, &frame.shadow_depths),
@@ -277,6 +276,7 @@ impl<'a> Recorder<'a> {
             (40, &frame.aovs),
         ];
         let mut bindings: Bindings = buffers.map(|(number, buffer)| (number, buffer.as_entire_binding())).into();
+        bindings.insert(8, scene.tables.binding());
         bindings.insert(37, wgpu::BindingResource::TextureView(&frame.mesh_targets.seen));
         bindings
     }
