@@ -23,7 +23,7 @@ fn classify(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_i
             let pixel = frame.origin + vec2u(index % frame.size.x, index / frame.size.x);
             color = vec4f(background_at(vec2f(pixel) + 0.5), 1.0);
         }
-        add_sample(index, color, vec3f(0.0), vec3f(0.0), 1e10, 0.0);
+        add_nothing(index, color);
         return;
     }
     let parts = key_parts(Key(words.y, words.x));

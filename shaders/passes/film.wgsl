@@ -17,6 +17,17 @@ const RESOLVE_LANES: u32 = 64u;
 const FIBER_LIST: u32 = 0u;
 const CORE_LIST: u32 = 4u;
 
+// A sample in which nothing is seen but the background, if that.
+fn add_nothing(index: u32, color: vec4f) {
+    if frame.first == 1u {
+        film_color[index] = color;
+        film_normal[index] = vec4f(vec3f(0.0), 1e10);
+        film_tangent[index] = vec4f(0.0);
+    } else if color.w > 0.0 {
+        film_color[index] += color;
+    }
+}
+
 fn add_sample(index: u32, color: vec4f, normal: vec3f, tangent: vec3f, depth: f32, draw_number: f32) {
     if frame.first == 1u {
         film_color[index] = color;

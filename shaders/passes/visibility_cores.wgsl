@@ -10,12 +10,15 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
     );
     let chord = b.depth - a.depth;
     let owner = key_owner(segment, slot);
-    let walk = line_walk(line, vec2f(frame.origin), vec2f(frame.origin + frame.size));
-    var place = walk_begin(walk, parts);
+    let to_a = a.side * line.a.radius;
+    let to_b = b.side * line.b.radius;
+    let corners = array<vec2f, 4>(a.position - to_a, a.position + to_a, b.position + to_b, b.position - to_b);
+    let walk = quad_walk(corners, vec2f(frame.origin), vec2f(frame.origin + frame.size));
+    var place = quad_begin(walk, parts);
     loop {
-        let pixel = walk_pixel(walk, place);
+        let pixel = vec2i(place.span.x, place.i);
         let hit = core_hit(a, b, vec2f(pixel) + 0.5);
-        if walk_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= core_half_width(yarn, hit.aspect) {
+        if quad_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= core_half_width(yarn, hit.aspect) {
             let detail = mix_detail(ends, mix(t0, t1, hit.t));
             let height = core_shown(yarn, hit, detail.fibers, core_chance(vec2u(pixel))).height;
             var key = Key(0u, 0u);
@@ -29,7 +32,7 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
                 store_key(tile_index(pixel), key);
             }
         }
-        place = walk_next(walk, place, parts);
+        place = quad_next(walk, place, parts);
         if place.i > walk.last {
             break;
         }

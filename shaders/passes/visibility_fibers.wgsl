@@ -163,31 +163,79 @@ fn draw_regular(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
     }
 }
 
-// Those that may fly away: one loop over all lines of all of them, since threads that run abreast wait for the one with most lines.
-fn draw_flyaways(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
-    let seed = ply_seed(b.segment.seed, ply);
-    let first_slot = ply * (b.yarn.fibers + 1u) + 1u;
-    var rank = first;
+// Those that may fly away, of every so many plies.
+struct Flyaways {
+    first_ply: u32,
+    plies: u32,
+    // By rank: the first, and how many. At most CHUNK in all plies.
+    first: u32,
+    count: u32,
+}
+
+// In floating point, since a software driver divides integers one by one.
+fn flyaway_turn(group: Flyaways, number: u32) -> u32 {
+    return u32((f32(number) + 0.5) / f32(group.count));
+}
+
+fn flyaway_ply(group: Flyaways, number: u32) -> u32 {
+    return group.first_ply + group.plies * flyaway_turn(group, number);
+}
+
+fn flyaway_at(b: Bundle, group: Flyaways, number: u32) -> Fiber {
+    let rank = group.first + number - group.count * flyaway_turn(group, number);
+    return fiber_at(b.yarn, ply_seed(b.segment.seed, flyaway_ply(group, number)), rank);
+}
+
+// Whether a fiber shows anything along the segment: far away those that stay in their ply are left to its core.
+fn is_shown(b: Bundle, fiber: Fiber) -> bool {
+    let most_inside = max(b.scale.ends[0].fibers, b.scale.ends[1].fibers) * f32(b.yarn.fibers);
+    return f32(fiber.rank) < most_inside || is_astray_along(b.yarn, b.segment, fiber);
+}
+
+// A bit for each that shows anything. What follows is dear, and threads that run abreast wait for the one with most of it.
+fn flyaways_shown(b: Bundle, group: Flyaways, all: u32) -> u32 {
+    var shown = 0u;
+    var number = 0u;
+    loop {
+        if number < all && is_shown(b, flyaway_at(b, group, number)) {
+            shown |= 1u << number;
+        }
+        number++;
+        if number >= all {
+            break;
+        }
+    }
+    return shown;
+}
+
+// One loop over all lines of all of them, since threads that run abreast wait for the one with most lines.
+fn draw_flyaways(b: Bundle, group: Flyaways, parts: Parts) {
+    let plies = (b.yarn.plies - group.first_ply + group.plies - 1u) / group.plies;
+    var shown = flyaways_shown(b, group, plies * group.count);
     var step = 1u;
     var begin = 0.0;
     loop {
-        let fiber = fiber_at(b.yarn, seed, rank);
+        // Without any left, the first, and nothing comes of it.
+        let number = countTrailingZeros(shown) & 31u;
+        let ply = flyaway_ply(group, number);
+        let fiber = flyaway_at(b, group, number);
         let ends = vec2f(f32(step - 1u), f32(step)) / f32(b.steps);
         let lines = step_lines(b.yarn, b.segment, b.rates, fiber, b.scale.radius_pixels, ends.x, ends.y);
         let line = line_from(b.segment, fiber, lines, begin);
         let from_end = flyaway_end(b, ply, fiber, lines, begin);
         let to_end = flyaway_end(b, ply, fiber, lines, line.end);
-        if rank < last && is_in_view(from_end, to_end) && joined(from_end.piece, from_end.period, to_end.piece, to_end.period) {
-            draw_between(from_end, to_end, begin, line.end, key_owner(b.number, first_slot + rank), parts);
+        if shown != 0u && is_in_view(from_end, to_end) && joined(from_end.piece, from_end.period, to_end.piece, to_end.period) {
+            let slot = ply * (b.yarn.fibers + 1u) + 1u + fiber.rank;
+            draw_between(from_end, to_end, begin, line.end, key_owner(b.number, slot), parts);
         }
         begin = line.next;
         step += select(0u, 1u, begin >= ends.y);
         if step > b.steps {
-            rank++;
+            shown &= shown - 1u;
             step = 1u;
             begin = 0.0;
         }
-        if rank >= last {
+        if shown == 0u {
             break;
         }
     }
@@ -230,12 +278,7 @@ fn visibility_fibers(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_inv
             break;
         }
     }
-    ply = found.item % plies;
-    loop {
-        draw_flyaways(bundle, ply, first, last_flyaway, parts);
-        ply += plies;
-        if ply >= yarn.plies || first >= last_flyaway {
-            break;
-        }
+    if first < last_flyaway {
+        draw_flyaways(bundle, Flyaways(found.item % plies, plies, first, last_flyaway - first), parts);
     }
 }

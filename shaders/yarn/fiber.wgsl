@@ -239,6 +239,29 @@ fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSec
     return section_in(yarn, s, p, fiber, period_at(yarn, s, fiber, floor(migration(s, fiber, p.length))));
 }
 
+// Whether a period has a loop or a hair astray between two places of the fiber's migration.
+fn is_astray_in(yarn: Yarn, fiber: Fiber, at: PeriodAt, from_migrated: f32, to_migrated: f32) -> bool {
+    let low = max(from_migrated - at.whole, 0.0);
+    let high = min(to_migrated - at.whole, 1.0);
+    if at.period.kind == PERIOD_LOOP {
+        // It is widest in the middle of its period.
+        let inner = fiber.radius * yarn.r_min;
+        let nearest = clamp(0.5, low, high);
+        return inner + (at.period.outer - inner) * (0.5 - 0.5 * circle(nearest).x) > ASTRAY_BEGIN;
+    }
+    let tip = 0.5 + at.period.direction * at.period.width;
+    return at.period.kind == PERIOD_HAIR && low < max(0.5, tip) && high > min(0.5, tip) && at.period.outer > ASTRAY_BEGIN;
+}
+
+// Whether a fiber leaves its ply along the segment. Of more than two periods, it is taken to.
+fn is_astray_along(yarn: Yarn, s: Segment, fiber: Fiber) -> bool {
+    let a = migration(s, fiber, 0.0);
+    let b = migration(s, fiber, scalar_value(s.length, 1.0));
+    let first = period_at(yarn, s, fiber, floor(a));
+    let second = period_at(yarn, s, fiber, floor(b));
+    return second.whole - first.whole > 1.0 || is_astray_in(yarn, fiber, first, a, b) || is_astray_in(yarn, fiber, second, a, b);
+}
+
 // Of a fiber that never flies away: the same, and much less to do.
 fn regular_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
     let phase = fract(migration(s, fiber, p.length));

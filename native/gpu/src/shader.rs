@@ -20,6 +20,7 @@ const SCENE: Files = files![
 const WORK: Files = files!["passes/work.wgsl"];
 const RASTER: Files = files![
     "math/capsule.wgsl",
+    "math/quad.wgsl",
     "yarn/core_fiber.wgsl",
     "passes/tables.wgsl",
     "passes/key.wgsl",

@@ -15,8 +15,8 @@ use crate::device::Gpu;
 use crate::knots::{MovingKnots, RestKnots};
 use crate::layout;
 use crate::tables::{SceneTransport, TableBuffer, TableCache, bound};
-use crate::word_texture::WordTexture;
 use crate::view::Bounds;
+use crate::word_texture::WordTexture;
 use crate::{Error, Object, Scene};
 
 /// A set of curves with one kind of yarn, as uploaded; instances share it.
@@ -124,8 +124,15 @@ pub(crate) fn empty_storage(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::
     }
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: bytes.max(if ["instances", "lights", "shadow views", "yarn kinds", "materials"].contains(&label) { 65536 } else { 256 }).next_multiple_of(16),
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM
+        size: bytes
+            .max(if ["instances", "lights", "shadow views", "yarn kinds", "materials"].contains(&label) {
+                65536
+            } else {
+                256
+            })
+            .next_multiple_of(16),
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::UNIFORM
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC
             | wgpu::BufferUsages::INDIRECT,

@@ -46,11 +46,7 @@ impl WordTexture {
                     ..texture.as_image_copy()
                 },
                 bytemuck::cast_slice(words),
-                wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(4 * WORDS_IN_ROW),
-                    rows_per_image: None,
-                },
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * WORDS_IN_ROW), rows_per_image: None },
                 wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             );
         };
