@@ -1,7 +1,4 @@
 // Tables and shadow maps as the resolve reads them.
-@group(0) @binding(7) var<uniform> materials: array<Material, 512>;
-@group(0) @binding(9) var<uniform> lights: array<Light, 512>;
-@group(0) @binding(10) var<uniform> shadow_views: array<ShadowView, 512>;
 @group(0) @binding(11) var<storage, read> shadow_depths: array<u32>;
 
 // One of a material's tables over |theta|.

@@ -1,19 +1,25 @@
 // The scene's bindings, and how a segment is read from them.
 
-// Not a uniform: Mesa 22's software driver compiles a shader anew for every value of a uniform that decides a branch,
-// and keeps them all.
+// An array of one: Mesa's software driver would compile a shader anew for every value of a uniform that decides a branch, and keep them all,
+// unless the compiler does not know which of several it reads.
 @group(0) @binding(0) var<uniform> frame_buffer: array<Frame, 1>;
-fn read_frame() -> Frame { return frame_buffer[arrayLength(&knot_radii) >> 28u]; }
 // Every entry point begins by reading it: inner loops then have it at hand.
 var<private> frame: Frame;
-@group(0) @binding(1) var<uniform> draws: array<Draw, 512>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> knot_positions: array<f32>;
 // Length coordinate, octahedral normal.
 @group(0) @binding(4) var<storage, read> knot_frames: array<vec2u>;
 // Radius and flags, curve.
 @group(0) @binding(5) var<storage, read> knot_radii: array<vec2u>;
-@group(0) @binding(6) var<uniform> yarns: array<Yarn, 256>;
+
+// 0, which the compiler does not know: no buffer holds 2³¹ bytes.
+fn unknown_zero() -> u32 {
+    return arrayLength(&curves) >> 28u;
+}
+
+fn read_frame() -> Frame {
+    return frame_buffer[unknown_zero()];
+}
 
 // Set on a knot where a segment begins.
 const KNOT_BEGINS_SEGMENT: u32 = 0x10000u;

@@ -1,7 +1,6 @@
 // How it works: yarns as thick tubes [WuYuksel2018 §4.1], rasterised like fibers into depth maps, one layer of the
 // dispatch (or some that share the work) for each view. Larger is nearer to the light; 0 is empty. Loops are as in visibility_fibers.wgsl.
 
-@group(0) @binding(10) var<uniform> shadow_views: array<ShadowView, 512>;
 @group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
 
 struct ShadowPass {

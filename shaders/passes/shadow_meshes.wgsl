@@ -1,7 +1,6 @@
 // How it works: the hardware draws all triangles into depth maps, one instance for each view; each texel keeps the nearest. The lowest
 // bit of a depth tells meshes, which let no light through, from yarns.
 
-@group(0) @binding(10) var<uniform> shadow_views: array<ShadowView, 512>;
 @group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
 
 struct MeshShadowVertex {

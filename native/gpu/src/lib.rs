@@ -1,6 +1,7 @@
 //! The renderer: yarn curves become fibers in compute shaders (`shaders/`), through `wgpu`.
 
 mod aov;
+mod arrays;
 pub mod cryptomatte;
 mod device;
 mod environment;

@@ -7,15 +7,17 @@ use lisle_core::scattering::{Material, ScatteringTables};
 use lisle_core::yarn::{PRESET_NAMES, Yarn};
 use lisle_precompute::Tables;
 
+use crate::arrays::Arrays;
 use crate::device::Gpu;
 use crate::layout;
 use crate::shader::{Film, Model, Pass, Resolve};
 use crate::tables::{TableBuffer, YarnTables};
+use crate::word_texture::WordTexture;
 
 /// A pass as it is drawn with, and an entry point that answers queries.
 fn source() -> String {
     let resolve = Pass::ResolveFibers(Resolve { film: Film::Plain, model: Model::Physical });
-    format!("{}\n{}", resolve.source(), include_str!("lighting_tests.wgsl"))
+    format!("{}\n{}", resolve.source(Arrays::Storage), include_str!("lighting_tests.wgsl"))
 }
 
 #[repr(C)]
@@ -137,12 +139,12 @@ impl Bench {
         let scene = [
             (6, storage(bytemuck::cast_slice::<layout::Yarn, u8>(&tables.yarns))),
             (7, storage(bytemuck::cast_slice(&tables.materials))),
-            (8, storage(bytemuck::cast_slice(&tables.words.0))),
         ];
+        let words = WordTexture::new(&self.gpu, "tables", &tables.words.0).expect("a texture");
         let answers = self.buffer(&vec![0; size], Usage::STORAGE | Usage::COPY_SRC);
         let own = [(0, storage(bytemuck::cast_slice(queries))), (1, answers.clone())];
-        let group = |index: u32, buffers: &[(u32, wgpu::Buffer)]| {
-            let mut entries = Vec::new();
+        let group = |index: u32, buffers: &[(u32, wgpu::Buffer)], texture: Option<wgpu::BindGroupEntry>| {
+            let mut entries = Vec::from_iter(texture);
             for (binding, buffer) in buffers {
                 entries.push(wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() });
             }
@@ -152,7 +154,8 @@ impl Bench {
                 entries: &entries,
             })
         };
-        let groups = [group(0, &scene), group(1, &own)];
+        let table = wgpu::BindGroupEntry { binding: 8, resource: words.binding() };
+        let groups = [group(0, &scene, Some(table)), group(1, &own, None)];
         let download = self.buffer(&vec![0; size], Usage::MAP_READ);
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {

@@ -5,9 +5,10 @@ use std::sync::Arc;
 use glam::{DMat4, DVec3, Vec3};
 use lisle_core::scene::between;
 
+use crate::arrays::array;
 use crate::device::Gpu;
 use crate::meshes::correspond;
-use crate::upload::{Draws, ObjectParts, Place, SceneBuffers, Shape, empty_storage};
+use crate::upload::{Draws, ObjectParts, Place, SceneBuffers, Shape};
 use crate::view::View;
 use crate::{Error, Mesh, Object, Scene};
 
@@ -214,8 +215,7 @@ impl Neighbour {
         let shape = buffers.shape_of(gpu, other, parts)?;
         let moment = Moment::new(buffers, other, parts, size, &shape.places)?;
         let items = &moment.draws.items;
-        let draws = empty_storage(gpu, "instances in another frame", size_of_val(&items[..]) as u64)?;
-        gpu.queue.write_buffer(&draws, 0, bytemuck::cast_slice(items));
+        let draws = array(gpu, "instances in another frame", items)?;
         let moved = |(here, there): (&Mesh, &Mesh)| MeshMove { here: here.clone(), there: there.clone() };
         let pairs = scene.meshes.iter().zip(&other.meshes);
         let mesh_moves = if scene.meshes.len() == other.meshes.len() { pairs.map(moved).collect() } else { Vec::new() };

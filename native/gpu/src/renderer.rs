@@ -15,7 +15,7 @@ use crate::mesh_raster::MeshPipelines;
 use crate::meshes::MeshBuffers;
 use crate::motion::{Motion, Neighbour};
 use crate::pipelines::Pipelines;
-use crate::shader::{Film, Pass, Resolve};
+use crate::shader::{Background, Film, Pass, Resolve};
 use crate::tables::TableCache;
 use crate::upload::SceneBuffers;
 use crate::waiting::{Turns, Waiting};
@@ -212,7 +212,10 @@ impl Drawing {
         let moment = motion.at(&buffers, 0.5)?;
         let film = if planes.count > 0 { Film::Aovs } else { Film::Plain };
         let resolve = Resolve { film, model: settings.model() };
+        let shows_sky = !settings.transparent && scene.environment.as_ref().is_some_and(|sky| sky.shines());
+        let background = if shows_sky { Background::Sky } else { Background::Even };
         let wanted = [
+            (true, Pass::Classify(background)),
             (true, Pass::ResolveFibers(resolve)),
             (true, Pass::ResolveCores(resolve)),
             (!meshes.is_empty(), Pass::ResolveMeshes(resolve)),
@@ -220,11 +223,11 @@ impl Drawing {
             (!motion.shapes.is_empty(), Pass::MoveKnots),
         ];
         let wanted: Vec<Pass> = wanted.into_iter().filter_map(|(is, pass)| is.then_some(pass)).collect();
-        pipelines.ensure(gpu, &wanted)?;
         let neighbours = neighbours.as_ref();
         let input = FrameInput {
             scene,
             settings,
+            background,
             resolve,
             planes,
             buffers: &buffers,
@@ -234,6 +237,8 @@ impl Drawing {
             meshes: &meshes,
         };
         let frame = FrameBuffers::fit(gpu, self.frame.take(), &input, &moment.draws, region)?;
+        let arrays = frame.arrays(gpu, &buffers);
+        pipelines.ensure(gpu, arrays, &wanted)?;
         let mesh_pipelines = mesh_pipelines.as_ref();
         let mut recorder = Recorder::new(gpu, pipelines, mesh_pipelines, listener, &input, &frame, moment)?;
         // What is left of a picture that was stopped is done before another begins.

@@ -1,5 +1,7 @@
 //! The WGSL of each pass: which files it is made of. Files of `passes/` hold bindings and entry points, all others pure functions.
 
+use crate::arrays::Arrays;
+
 macro_rules! files {
     ($($path:literal),* $(,)?) => { &[$(($path, include_str!(concat!("../../../shaders/", $path)))),*] };
 }
@@ -17,6 +19,8 @@ const SCENE: Files = files![
     "yarn/steps.wgsl",
     "passes/scene.wgsl",
 ];
+const ARRAYS_UNIFORM: Files = files!["passes/arrays_uniform.wgsl"];
+const ARRAYS_STORAGE: Files = files!["passes/arrays_storage.wgsl"];
 const WORK: Files = files!["passes/work.wgsl"];
 const RASTER: Files = files![
     "math/capsule.wgsl",
@@ -41,7 +45,8 @@ const SHADING: Files = files![
     "passes/shade.wgsl",
 ];
 
-const KEYS: Files = files!["passes/key.wgsl", "passes/film.wgsl", "passes/background.wgsl", "passes/mesh_target.wgsl"];
+const KEYS: Files = files!["passes/key.wgsl", "passes/film.wgsl", "passes/mesh_target.wgsl"];
+const BACKGROUND_SKY: Files = files!["passes/background_sky.wgsl"];
 const MESHES: Files = files!["passes/meshes.wgsl"];
 
 /// How visibility keys reach memory.
@@ -53,6 +58,15 @@ pub enum Store {
     High,
     /// Lower halves where the upper has won.
     Low,
+}
+
+/// What lies behind everything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Background {
+    /// One colour.
+    Even,
+    /// A picture of the sky.
+    Sky,
 }
 
 /// What the resolve passes add to.
@@ -120,7 +134,7 @@ pub enum Pass {
     Fibers(Store),
     Cores(Store),
     Shadow,
-    Classify,
+    Classify(Background),
     SizeLists,
     ResolveFibers(Resolve),
     ResolveCores(Resolve),
@@ -149,7 +163,8 @@ impl Pass {
             Self::Cores(Store::High),
             Self::Cores(Store::Low),
             Self::Shadow,
-            Self::Classify,
+            Self::Classify(Background::Even),
+            Self::Classify(Background::Sky),
             Self::SizeLists,
             Self::Follow,
             Self::MoveKnots,
@@ -167,7 +182,7 @@ impl Pass {
             Self::Fibers(_) => "visibility_fibers",
             Self::Cores(_) => "visibility_cores",
             Self::Shadow => "shadow",
-            Self::Classify => "classify",
+            Self::Classify(_) => "classify",
             Self::SizeLists => "size_lists",
             Self::ResolveFibers(_) => "resolve_fibers",
             Self::ResolveCores(_) => "resolve_cores",
@@ -178,19 +193,29 @@ impl Pass {
     }
 
     /// The pass's files in one piece.
-    pub fn source(self) -> String {
+    pub fn source(self, arrays: Arrays) -> String {
         let store = |store| match store {
             Store::Wide => files!["passes/store_wide.wgsl"],
             Store::High => files!["passes/store_high.wgsl"],
             Store::Low => files!["passes/store_low.wgsl"],
         };
-        let parts: Vec<Files> = match self {
+        let arrays = match arrays {
+            Arrays::Uniform => ARRAYS_UNIFORM,
+            Arrays::Storage => ARRAYS_STORAGE,
+        };
+        let mut parts: Vec<Files> = match self {
             Self::Cull => vec![SCENE, WORK, files!["passes/cull.wgsl"]],
             Self::Scan => vec![SCENE, WORK, files!["passes/scan.wgsl"]],
             Self::Fibers(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_fibers.wgsl"]],
             Self::Cores(s) => vec![SCENE, WORK, RASTER, store(s), files!["passes/visibility_cores.wgsl"]],
             Self::Shadow => vec![SCENE, files!["math/capsule.wgsl", "passes/work.wgsl", "passes/shadow.wgsl"]],
-            Self::Classify => vec![SCENE, WORK, KEYS, files!["passes/classify.wgsl"]],
+            Self::Classify(background) => {
+                let background = match background {
+                    Background::Even => files!["passes/background_even.wgsl"],
+                    Background::Sky => BACKGROUND_SKY,
+                };
+                vec![SCENE, WORK, KEYS, background, files!["passes/classify.wgsl"]]
+            }
             Self::SizeLists => vec![SCENE, WORK, files!["passes/film.wgsl", "passes/size_lists.wgsl"]],
             Self::ResolveFibers(of) => {
                 let [film, model] = of.files();
@@ -209,14 +234,19 @@ impl Pass {
                     SHADING,
                     film,
                     model,
-                    files!["passes/background.wgsl", "passes/mesh_target.wgsl"],
+                    BACKGROUND_SKY,
+                    files!["passes/mesh_target.wgsl"],
                     MESHES,
                     files!["passes/resolve_meshes.wgsl"],
                 ]
             }
             Self::Follow => vec![SCENE, WORK, files!["passes/follow.wgsl"]],
-            Self::MoveKnots => vec![files!["math/pack.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"]],
+            // Without a scene.
+            Self::MoveKnots => {
+                return joined(&[files!["math/pack.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"]]);
+            }
         };
+        parts.push(arrays);
         joined(&parts)
     }
 
@@ -225,8 +255,8 @@ impl Pass {
     }
 
     /// Parsed and validated; the bindings that the entry point uses.
-    pub fn reflect(self) -> Result<Reflection, String> {
-        reflect(&self.source(), self.needs_wide_atomics())
+    pub fn reflect(self, arrays: Arrays) -> Result<Reflection, String> {
+        reflect(&self.source(arrays), self.needs_wide_atomics())
     }
 }
 
@@ -252,7 +282,7 @@ impl Raster {
             Self::Visibility => files!["passes/visibility_meshes.wgsl"],
             Self::Shadow => files!["passes/shadow_meshes.wgsl"],
         };
-        joined(&[SCENE, MESHES, own])
+        joined(&[SCENE, ARRAYS_STORAGE, MESHES, own])
     }
 
     /// Parsed and validated; the bindings that either entry point uses.
@@ -309,8 +339,10 @@ mod tests {
     #[test]
     fn every_pass_is_valid() {
         for pass in Pass::all() {
-            if let Err(message) = pass.reflect() {
-                panic!("{pass:?}:\n{message}");
+            for arrays in Arrays::ALL {
+                if let Err(message) = pass.reflect(arrays) {
+                    panic!("{pass:?}, {arrays:?}:\n{message}");
+                }
             }
         }
         for raster in [Raster::Visibility, Raster::Shadow] {
@@ -344,8 +376,26 @@ mod tests {
 
     #[test]
     fn shared_structs_match_the_shaders() {
-        let module = Pass::ResolveFibers(AOVS).reflect().expect("valid").module;
+        let module = Pass::ResolveFibers(AOVS).reflect(Arrays::Uniform).expect("valid").module;
         assert_eq!(mismatches(&module), Vec::<String>::new());
+    }
+
+    #[test]
+    fn arrays_fill_a_uniform() {
+        let module = Pass::ResolveMeshes(AOVS).reflect(Arrays::Uniform).expect("valid").module;
+        let array = |variable: &naga::GlobalVariable| match module.types[variable.ty].inner {
+            naga::TypeInner::Array { size: naga::ArraySize::Constant(count), stride, .. }
+                if variable.space == naga::AddressSpace::Uniform && count.get() > 1 =>
+            {
+                Some((count.get() * stride, stride))
+            }
+            _ => None,
+        };
+        let sizes: Vec<(u32, u32)> =
+            module.global_variables.iter().filter_map(|(_, variable)| array(variable)).collect();
+        assert_eq!(sizes.len(), 5);
+        let most = crate::arrays::UNIFORM_BYTES as u32;
+        assert!(sizes.iter().all(|(size, stride)| *size <= most && size + stride > most), "{sizes:?}");
     }
 
     /// Constants that are written both here and in WGSL.
@@ -404,7 +454,7 @@ mod tests {
 
     #[test]
     fn shared_constants_match_the_shaders() {
-        let source = Pass::ResolveFibers(AOVS).source();
+        let source = Pass::ResolveFibers(AOVS).source(Arrays::Uniform);
         assert_eq!(constants_apart(&source), (Vec::new(), shared_constants().len()));
         let other = source.replace("const HALF_WAY: f32 = 0.2;", "const HALF_WAY: f32 = 0.25;");
         assert_eq!(constants_apart(&other).0.len(), 1);
@@ -412,7 +462,7 @@ mod tests {
 
     #[test]
     fn a_moved_member_is_noticed() {
-        let source = Pass::ResolveFibers(AOVS).source();
+        let source = Pass::ResolveFibers(AOVS).source(Arrays::Uniform);
         let moved =
             source.replace("    first_knot: u32,\n    knot_count: u32,", "    knot_count: u32,\n    first_knot: u32,");
         assert_ne!(source, moved);

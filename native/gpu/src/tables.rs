@@ -47,7 +47,7 @@ impl Words {
     }
 }
 
-/// A kind of yarn as the shaders read it: 16 MiB, mostly of its core texture.
+/// A kind of yarn as the shaders read it: 25 MiB, mostly of its core texture.
 pub(crate) struct YarnTables {
     words: Words,
     /// Its offsets are from the first of these words.
@@ -305,7 +305,7 @@ impl TableCache {
     }
 
     /// Keeps what was used last: as much as a scene of so many needs, and for whoever tries one after the other, or has several views, at least
-    /// eight kinds of yarn, 16 MiB each, and 16 tables of multiple scattering, 1.5 MiB each, of which drafts have their own.
+    /// eight kinds of yarn, 25 MiB each, and 16 tables of multiple scattering, 1.5 MiB each, of which drafts have their own.
     pub fn forget(&mut self, yarns: usize, transports: usize) {
         self.yarns.forget(yarns.max(8));
         self.transports.forget((2 * transports).max(16));
@@ -406,12 +406,19 @@ mod tests {
         for ((kind, tables), yarn) in buffer.yarns.iter().zip(&tables).zip(&yarns) {
             let core = &tables.core_fiber;
             let words = &buffer.words.0;
-            let stored = |texel: usize| words[kind.core_heights as usize + texel / 2] >> (16 * (texel & 1)) & 0xffff;
+            let word = |texel: usize| words[kind.core_heights as usize + texel];
+            let stored = |texel: usize| word(texel) & 0xffff;
             let height = |texel: usize| f64::from(stored(texel) >> CORE_PLACE_BITS) / 2047.0 * 4.0 - 2.0;
             assert!((0..core.texels.len()).all(|k| (height(k) - f64::from(core.texels[k][0])).abs() < 0.001));
             assert!((0..core.texels.len()).any(|k| (height(k) - f64::from(core.texels[0][0])).abs() > 0.1));
-            // Layer 2 has the fibers from 4/25 on, layer 3 those from 9/25.
+            // Behind each is what the next layer has there, and a hole behind the last.
             let of_layer = core.length * core.width;
+            let behind = |k: usize| {
+                let is_last = k / of_layer % core.layers == core.layers - 1;
+                if is_last { 31 } else { stored(k + of_layer) }
+            };
+            assert!((0..core.texels.len()).all(|k| word(k) >> 16 == behind(k)));
+            // Layer 2 has the fibers from 4/25 on, layer 3 those from 9/25.
             for k in 2 * of_layer..3 * of_layer {
                 let rank = f64::from(core.ranks[k]);
                 let share = (rank / f64::from(yarn.fibers_per_ply) - 4.0 / 25.0) / (5.0 / 25.0);

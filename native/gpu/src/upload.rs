@@ -11,6 +11,7 @@ use lisle_core::strands::Yarns;
 use lisle_core::yarn::Yarn;
 use lisle_precompute::Transport;
 
+use crate::arrays::{array, empty_array};
 use crate::device::Gpu;
 use crate::knots::{MovingKnots, RestKnots};
 use crate::layout;
@@ -118,26 +119,25 @@ pub(crate) fn storage<T: Pod>(gpu: &Gpu, label: &str, data: &[T]) -> Result<wgpu
 
 /// A storage buffer of at least that size.
 pub(crate) fn empty_storage(gpu: &Gpu, label: &str, bytes: u64) -> Result<wgpu::Buffer, Error> {
-    let limit = gpu.limits.max_storage_buffer_binding_size.min(gpu.limits.max_buffer_size);
-    if bytes > limit {
-        return Err(gpu.error(format!("{label} need {} MiB; a buffer holds at most {} MiB", bytes >> 20, limit >> 20)));
-    }
+    check_storage(gpu, label, bytes)?;
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        size: bytes
-            .max(if ["instances", "lights", "shadow views", "yarn kinds", "materials"].contains(&label) {
-                65536
-            } else {
-                256
-            })
-            .next_multiple_of(16),
+        size: bytes.max(256).next_multiple_of(16),
         usage: wgpu::BufferUsages::STORAGE
-            | wgpu::BufferUsages::UNIFORM
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC
             | wgpu::BufferUsages::INDIRECT,
         mapped_at_creation: false,
     }))
+}
+
+/// Fails if a buffer cannot hold so much.
+pub(crate) fn check_storage(gpu: &Gpu, label: &str, bytes: u64) -> Result<(), Error> {
+    let limit = gpu.limits.max_storage_buffer_binding_size.min(gpu.limits.max_buffer_size);
+    if bytes > limit {
+        return Err(gpu.error(format!("{label} need {} MiB; a buffer holds at most {} MiB", bytes >> 20, limit >> 20)));
+    }
+    Ok(())
 }
 
 /// Index of an equal item, added if there is none.
@@ -232,8 +232,8 @@ impl SceneBuffers {
             materials.iter().for_each(|material| tables.add_material(material));
             wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
             buffers.transports = wanted;
-            buffers.yarns = storage(gpu, "yarn kinds", &tables.yarns)?;
-            buffers.material_data = storage(gpu, "materials", &tables.materials)?;
+            buffers.yarns = array(gpu, "yarn kinds", &tables.yarns)?;
+            buffers.material_data = array(gpu, "materials", &tables.materials)?;
             buffers.tables = WordTexture::new(gpu, "tables of yarns and materials", &tables.words.0)?;
             (buffers.kinds, buffers.materials, buffers.table_resolution) = (kinds, materials, table_resolution);
         }
@@ -278,8 +278,8 @@ impl SceneBuffers {
             displaced: false,
             radii: storage(gpu, "control points (radii)", &radii)?,
             curves: storage(gpu, "curves", &curves)?,
-            yarns: empty_storage(gpu, "yarn kinds", 0)?,
-            material_data: empty_storage(gpu, "materials", 0)?,
+            yarns: empty_array(gpu, "yarn kinds", 0)?,
+            material_data: empty_array(gpu, "materials", 0)?,
             tables: WordTexture::new(gpu, "tables", &[])?,
             uploaded_bytes: 0,
         };

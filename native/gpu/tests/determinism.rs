@@ -49,6 +49,27 @@ fn assert_same(name: &str, a: &Image, b: &Image) {
     assert_eq!(measure::difference(a, b), None, "{name}");
 }
 
+/// More draws than a uniform holds are read from a storage buffer: the same pictures, by other shaders.
+#[test]
+fn many_draws_look_as_few() {
+    let yarns = Arc::new(Yarns::new(Curves::catmull_rom(curves::patch(3, 2.0, 12), false), Some(0.08)).expect("valid"));
+    let of = |draws: usize| {
+        let (mut scene, settings) = soft_scene(&yarns, SIZE);
+        let object = scene.objects[0].clone();
+        // Thirty places, with many copies in each: what is seen does not depend on how many.
+        let at = |k: usize| DVec3::new((k % 6) as f64 - 2.5, 0.4 * (k % 5) as f64, (k % 5) as f64 - 2.0) * 0.4;
+        scene.objects = (0..draws)
+            .map(|k| Object { world_from_object: DMat4::from_translation(at(k % 30)), ..object.clone() })
+            .collect();
+        draw(&scene, &settings)
+    };
+    // Numbers of segments take as many bits of a key in both.
+    let (few, many) = (of(600), of(720));
+    assert!(measure::area(&few) > 1000.0, "nothing is drawn");
+    assert!(few.combined == many.combined, "another picture");
+    assert!(few.combined != of(20).combined, "copies are not told from no copies");
+}
+
 #[test]
 fn a_picture_is_the_same_alone_again_and_after_others() {
     let cloth = cloth();

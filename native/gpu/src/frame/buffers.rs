@@ -2,9 +2,10 @@
 
 use super::tiles::{TileLimits, most_of, tiles};
 use super::{BLOCK, FrameInput};
+use crate::arrays::{Arrays, empty_array};
 use crate::device::Gpu;
 use crate::mesh_raster::MeshTargets;
-use crate::upload::{Draws, empty_storage};
+use crate::upload::{Draws, SceneBuffers, empty_storage};
 use crate::{Error, layout, lights};
 
 /// Buffers that depend on the picture's size and the scene's counts.
@@ -104,9 +105,9 @@ impl FrameBuffers {
             segment_work: empty_storage(gpu, "work of segments", 4 * capacity.segments)?,
             block_work: empty_storage(gpu, "work of blocks", 4 * capacity.segments.div_ceil(u64::from(BLOCK)))?,
             dispatch: empty_storage(gpu, "dispatch", 32)?,
-            draws: empty_storage(gpu, "instances", capacity.draws * size_of::<layout::Draw>() as u64)?,
-            lights: empty_storage(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
-            views: empty_storage(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
+            draws: empty_array(gpu, "instances", capacity.draws * size_of::<layout::Draw>() as u64)?,
+            lights: empty_array(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
+            views: empty_array(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
             shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
             uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::UNIFORM),
             pass_uniform: uniform("pass", 16, wgpu::BufferUsages::UNIFORM),
@@ -126,6 +127,11 @@ impl FrameBuffers {
     /// Shadow maps.
     pub(super) fn views(&self) -> u64 {
         self.capacity.views
+    }
+
+    /// Where shaders find what the scene has few of.
+    pub fn arrays(&self, gpu: &Gpu, scene: &SceneBuffers) -> Arrays {
+        Arrays::of(gpu, &[&self.draws, &self.lights, &self.views, &scene.yarns, &scene.material_data])
     }
 
     pub(super) fn bytes(&self) -> u64 {

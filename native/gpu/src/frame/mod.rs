@@ -14,6 +14,7 @@ use glam::Vec3;
 use self::threads::{core_parts, fold, nearest_w, parts, parts_within};
 use self::tiles::{TileLimits, tiles};
 use crate::aov::{FRAME_WORDS, Planes, VECTOR_WORDS};
+use crate::arrays::Arrays;
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
 use crate::layout::{self, NONE};
@@ -24,7 +25,7 @@ use crate::motion::{Moment, Motion, Neighbour};
 use crate::noise::Noise;
 use crate::pipelines::{Bindings, Pipelines};
 use crate::sampling::{PixelFilter, Use, pair, sphere};
-use crate::shader::{Film, Pass, Resolve};
+use crate::shader::{Background, Film, Pass, Resolve};
 use crate::timing::Timer;
 use crate::upload::SceneBuffers;
 use crate::view::View;
@@ -51,6 +52,7 @@ const DEPTH_BITS: std::ops::RangeInclusive<u32> = 18..=24;
 pub(crate) struct FrameInput<'a> {
     pub scene: &'a Scene,
     pub settings: &'a Settings,
+    pub background: Background,
     pub resolve: Resolve,
     pub planes: Planes,
     pub buffers: &'a SceneBuffers,
@@ -107,6 +109,7 @@ pub(crate) struct Recorder<'a> {
     listener: &'a PictureListener,
     input: &'a FrameInput<'a>,
     frame: &'a FrameBuffers,
+    arrays: Arrays,
     uniform: layout::Frame,
     filter: PixelFilter,
     timer: Timer,
@@ -155,6 +158,7 @@ impl<'a> Recorder<'a> {
             listener,
             input,
             frame,
+            arrays: frame.arrays(gpu, input.buffers),
             uniform: layout::Frame {
                 segment_count: draws.segment_count,
                 draw_count: draws.items.len() as u32,
@@ -500,7 +504,7 @@ impl<'a> Recorder<'a> {
             encoder.clear_buffer(&self.frame.aovs, 0, None);
         }
         let (x, y) = fold((width * height).div_ceil(LANES));
-        self.record(&mut encoder, Pass::Classify, |pass| pass.dispatch_workgroups(x, y, 1));
+        self.record(&mut encoder, Pass::Classify(self.input.background), |pass| pass.dispatch_workgroups(x, y, 1));
         if has_meshes {
             self.record(&mut encoder, Pass::ResolveMeshes(resolve), |pass| pass.dispatch_workgroups(x, y, 1));
         }
@@ -566,7 +570,7 @@ impl<'a> Recorder<'a> {
         let (mut bindings, gpu, pipelines) = (self.bindings(), self.gpu, self.pipelines);
         bindings.extend(bound.iter().map(|(number, buffer)| (*number, buffer.as_entire_binding())));
         let timestamps = self.timer.begin(pass.entry_point());
-        pipelines.record(gpu, encoder, pass, &bindings, timestamps, dispatch);
+        pipelines.record(gpu, encoder, (pass, self.arrays), &bindings, timestamps, dispatch);
     }
 }
 

@@ -1,4 +1,4 @@
-// What lies behind everything.
+// What lies behind everything, with a picture of the sky.
 
 @group(0) @binding(30) var<storage, read> sky: Sky;
 // Red and green, blue: halves.
