@@ -144,8 +144,8 @@ struct Yarn {
     extinction_table: u32,
     seen_sky_table: u32,
     seen_sky_size: u32,
-    // Share of the light on the yarn that goes through between its fibers.
-    through_circle: f32,
+    // Of the opaque tube that takes as much light as the fibers.
+    tube_radius: f32,
     // The core texture's heights once more, with their fibers' places in the order of drawing, two to a word: visibility wants nothing else, and waits for memory.
     core_heights: u32,
     core_slants: u32,

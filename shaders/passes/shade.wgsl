@@ -70,13 +70,12 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
     var i = 0u;
     loop {
         let direction = sky_direction(frame.sky_view + i);
-        let shadow = tube_shadow(frame.sky_view + i, surface.tube, surface.position, direction);
-        let by_yarns = (1.0 - shadow.open - shadow.solid) * (1.0 - yarn.through_circle);
-        let open = 1.0 - shadow.solid - by_yarns;
-        around.open += share * open;
+        let shadow = tube_shadow(frame.sky_view + i, shadow_tube(yarn, surface.tube), surface.position, direction);
+        let by_yarns = 1.0 - shadow.open - shadow.solid;
+        around.open += share * shadow.open;
         if MULTIPLE {
             let scattered = transport_ambient(transport, seen.section, direction) * hidden;
-            around.sky += (share * open) * scattered;
+            around.sky += (share * shadow.open) * scattered;
             around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
         }
         i++;
@@ -85,6 +84,11 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
         }
     }
     return around;
+}
+
+// A yarn as shadow maps have it.
+fn shadow_tube(yarn: Yarn, tube: Tube) -> Tube {
+    return Tube(tube.center, yarn.tube_radius * tube.radius, tube.tangent);
 }
 
 // Radiance of other yarns under a light in that direction, per irradiance.
@@ -107,29 +111,26 @@ fn neighbours_radiance(transport: u32, around: Around, direction: vec3f) -> vec3
 // Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
 const CLOTH_OPEN: f32 = 0.5;
 
-// Yarns that light goes straight through at most: the way to the nearest yarn of the map is known, not what of it is yarn and what is air.
-const MOST_YARNS_ABOVE: f32 = 3.0;
-
 // What other yarns leave of a light.
 struct Passing {
-    // Share that comes straight, beside them and between their fibers.
+    // Share that comes straight.
     straight: f32,
     // Share that they scatter on, over the half space of the light: each yarn some, as hairs do in [Zinke2008].
     spread: vec3f,
 }
 
 fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, tube: Tube, position: vec3f) -> Passing {
-    let shadow = light_shadow(light, incident, tube, position);
-    let yarns_above = max(shadow.way / (2.0 * tube.radius), 1.0);
-    let between_fibers = pow(yarn.through_circle, min(yarns_above, MOST_YARNS_ABOVE));
+    let shadow = light_shadow(light, incident, shadow_tube(yarn, tube), position);
     // Meshes let nothing through.
     let blocked = 1.0 - shadow.open - shadow.solid;
     var spread = vec3f(0.0);
     if MULTIPLE {
+        // Of the light that fibers take: `through` has that beside them, too.
+        let scattered_on = max(through - (1.0 - yarn.tube_radius), vec3f(0.0)) / yarn.tube_radius;
         // Through air it is spread as well, so that all of the way counts.
-        spread = blocked * max(pow(through, vec3f(yarns_above)) - pow(yarn.through_circle, yarns_above), vec3f(0.0));
+        spread = blocked * pow(scattered_on, vec3f(max(shadow.way / (2.0 * tube.radius), 1.0)));
     }
-    return Passing(shadow.open + blocked * between_fibers, spread);
+    return Passing(shadow.open, spread);
 }
 
 // Radiance by what it comes from: light scattered once, by lobe, and more than once; and ambient light, however often it is scattered.

@@ -1,4 +1,4 @@
-// How it works: yarns as thick tubes [WuYuksel2018 §4.1], rasterised like fibers into depth maps, one layer of the
+// How it works: yarns as opaque tubes [WuYuksel2018 §4.1], as thick as what they take of the light, rasterised like fibers into depth maps, one layer of the
 // dispatch (or some that share the work) for each view. Larger is nearer to the light; 0 is empty. Loops are as in visibility_fibers.wgsl.
 
 @group(0) @binding(11) var<storage, read_write> shadow_depths: array<atomic<u32>>;
@@ -51,6 +51,7 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
         return;
     }
     let s = segment_at(draw, segment);
+    let tube_radius = yarns[draws[draw].yarn].tube_radius;
     let orthographic = view.parallel == 1u;
     let base = view_index * frame.shadow_resolution * frame.shadow_resolution;
     let bend = length(s.position.c) + 3.0 * length(s.position.d);
@@ -58,12 +59,12 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
     let bend_texels = 0.25 * bend * view.texels_per_unit / max(start.z, view.near);
     let steps = clamp(u32(ceil(sqrt(bend_texels))), 1u, 32u);
     var previous = start;
-    var previous_radius = s.radius.x;
+    var previous_radius = tube_radius * s.radius.x;
     var step = 1u;
     loop {
         let t = f32(step) / f32(steps);
         let next = to_pixel(view.texel_from_render, cubic_value(s.position, t));
-        let next_radius = scalar_value(s.radius, t);
+        let next_radius = tube_radius * scalar_value(s.radius, t);
         if min(previous.w, next.w) > view.near {
             let line = make_line(
                 LineEnd(previous.xy, previous.w, previous_radius * view.texels_per_unit / previous.z),

@@ -149,7 +149,7 @@ shared! {
         extinction_table: u32,
         seen_sky_table: u32,
         seen_sky_size: u32,
-        through_circle: f32,
+        tube_radius: f32,
         core_heights: u32,
         core_slants: u32,
         core_slant_step: f32,

@@ -125,7 +125,7 @@ impl YarnTables {
             extinction_table,
             seen_sky_table,
             seen_sky_size: tables.self_shadow.seen_sky_size as u32,
-            through_circle: tables.self_shadow.through_circle,
+            tube_radius: tables.self_shadow.tube_radius,
             core_heights,
             core_slants: core.slants as u32,
             core_slant_step: core.slant_step,

@@ -44,8 +44,9 @@ pub struct SelfShadow {
     pub seen_sky: Vec<f32>,
     /// Texels along a side of `seen_sky`.
     pub seen_sky_size: usize,
-    /// Share of the light on the yarn's outer circle that goes through between its fibers: the mean over its width and all sides.
-    pub through_circle: f32,
+    /// Radius of an opaque tube that takes as much of a light from the side as the fibers do, in outer radii. Fibers do so nearly all within it,
+    /// and hardly any beyond: of the presets' light nothing goes through up to 0.6, and 65 to 82 % at 0.9.
+    pub tube_radius: f32,
 }
 
 /// c in the middle of the squared y axis of [`SelfShadow::seen_sky`].
@@ -122,8 +123,7 @@ impl SelfShadow {
         let optical_depth: Vec<f32> = optical_depth;
         let texel = |k: usize| ((k as f64 + 0.5) / size as f64 * 2.0 - 1.0) * EXTENT;
         // The first texel of a row has all fibers between it and the light.
-        let rows = optical_depth.chunks_exact(size).enumerate().filter(|(k, _)| texel(k % size).abs() < 1.0);
-        let (through, count) = rows.fold((0.0, 0.0), |(sum, count), (_, row)| (sum + (-row[0]).exp(), count + 1.0));
+        let taken: f64 = optical_depth.chunks_exact(size).map(|row| 1.0 - f64::from(-row[0]).exp()).sum();
         let extinction =
             (0..size * size).map(|k| density.extinction(DVec2::new(texel(k % size), texel(k / size))) as f32).collect();
         Self {
@@ -142,7 +142,7 @@ impl SelfShadow {
                 })
                 .collect(),
             seen_sky_size: SEEN_SKY_SIZE,
-            through_circle: through / count,
+            tube_radius: (EXTENT * taken / (size * slices) as f64) as f32,
         }
     }
 
