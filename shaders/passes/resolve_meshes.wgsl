@@ -137,7 +137,7 @@ struct MeshLight {
 fn mesh_light(point: MeshPoint) -> MeshLight {
     var sum: MeshLight;
     for (var i = 0u; i < frame.light_count; i++) {
-        let light = lights[i + (arrayLength(&knot_radii) >> 28u)];
+        let light = lights[i + unknown_zero()];
         let incident = incident_light(light, point.position);
         let cosine = dot(point.normal, incident.direction);
         if cosine <= 0.0 || dot(point.facing, incident.direction) <= 0.0 || all(incident.irradiance <= vec3f(0.0)) {

@@ -178,7 +178,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     var shaded: Shaded;
     var i = 0u;
     loop {
-        let light = lights[i + (arrayLength(&knot_radii) >> 28u)];
+        let light = lights[i + unknown_zero()];
         i++;
         let incident = incident_light(light, surface.position);
         if i > frame.light_count || all(incident.irradiance <= vec3f(0.0)) {
