@@ -49,7 +49,7 @@ fn yarn_place(draw: u32, surface: Surface) -> YarnPlace {
     let off = (surface.position - p.position) / p.radius;
     let offset = vec3f(dot(off, p.normal), dot(off, p.binormal), dot(off, p.tangent));
     let turns = fract(atan2(offset.y, offset.x) / TAU);
-    return YarnPlace(length_share(knot_frames[knot].x) + p.length, turns, offset);
+    return YarnPlace(length_share(knot_length(knot)) + p.length, turns, offset);
 }
 
 fn material_albedo(draw: u32, surface: Surface) -> vec3f {
@@ -102,7 +102,7 @@ fn add_aovs(index: u32, draw: u32, surface: Surface, shaded: Shaded) {
     let place = yarn_place(draw, surface);
     if frame.plane_uv != NO_PLANE {
         let knot = draws[draw].first_knot + surface.segment - draws[draw].first_segment;
-        set_aov(frame.plane_uv, index, place.length * curves[knot_radii[knot].y].rest_length);
+        set_aov(frame.plane_uv, index, place.length * curves[knot_curve(knot)].rest_length);
         set_aov(frame.plane_uv + 1u, index, place.turns);
     }
     if frame.plane_vector != NO_PLANE {

@@ -34,7 +34,7 @@ struct Work {
 fn work_of(segment: u32) -> Work {
     let draw = find_draw(segment);
     let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
-    if (knot_radii[knot].x & KNOT_BEGINS_SEGMENT) == 0u {
+    if !begins_segment(knot) {
         return Work(0u, 0u);
     }
     let s = segment_at(draw, segment);

@@ -6,11 +6,11 @@
 // Every entry point begins by reading it: inner loops then have it at hand.
 var<private> frame: Frame;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
-@group(0) @binding(3) var<storage, read> knot_positions: array<f32>;
-// Length coordinate, octahedral normal.
-@group(0) @binding(4) var<storage, read> knot_frames: array<vec2u>;
-// Radius and flags, curve.
-@group(0) @binding(5) var<storage, read> knot_radii: array<vec2u>;
+// What moves: position, octahedral normal.
+@group(0) @binding(3) var knots: texture_2d<u32>;
+// Length coordinate; radius and flags.
+@group(0) @binding(4) var rest_knots: texture_2d<u32>;
+@group(0) @binding(5) var knot_curves: texture_2d<u32>;
 
 // 0, which the compiler does not know: no buffer holds 2³¹ bytes.
 fn unknown_zero() -> u32 {
@@ -39,34 +39,41 @@ fn find_draw(segment: u32) -> u32 {
     return low;
 }
 
-fn knot_position(draw: u32, knot: u32) -> vec3f {
-    let p = vec4f(knot_positions[3u * knot], knot_positions[3u * knot + 1u], knot_positions[3u * knot + 2u], 1.0);
-    return vec3f(
+fn begins_segment(knot: u32) -> bool {
+    return (textureLoad(rest_knots, texel_at(knot), 0).y & KNOT_BEGINS_SEGMENT) != 0u;
+}
+
+// Length coordinate, as a fraction of the curve's length.
+fn knot_length(knot: u32) -> u32 {
+    return textureLoad(rest_knots, texel_at(knot), 0).x;
+}
+
+fn knot_curve(knot: u32) -> u32 {
+    return textureLoad(knot_curves, texel_at(knot), 0).x;
+}
+
+fn knot_at(draw: u32, knot: u32) -> Knot {
+    let moving = textureLoad(knots, texel_at(knot), 0);
+    let rest = textureLoad(rest_knots, texel_at(knot), 0);
+    let p = vec4f(bitcast<vec3f>(moving.xyz), 1.0);
+    let position = vec3f(
         dot(draws[draw].render_from_object_x, p),
         dot(draws[draw].render_from_object_y, p),
         dot(draws[draw].render_from_object_z, p),
     );
-}
-
-fn knot_radius(draw: u32, knot: u32) -> f32 {
-    return f32(knot_radii[knot].x & 0xffffu) / 65535.0 * draws[draw].radius_max;
-}
-
-fn knot_at(draw: u32, index: u32) -> Knot {
-    let frame_word = knot_frames[index];
-    let n = vec4f(unpack_unit_vector(frame_word.y), 0.0);
+    let n = vec4f(unpack_unit_vector(moving.w), 0.0);
     let normal = vec3f(
         dot(draws[draw].render_from_object_x, n),
         dot(draws[draw].render_from_object_y, n),
         dot(draws[draw].render_from_object_z, n),
     );
-    return Knot(knot_position(draw, index), normalize(normal), frame_word.x, knot_radius(draw, index));
+    let radius = f32(rest.y & 0xffffu) / 65535.0 * draws[draw].radius_max;
+    return Knot(position, normalize(normal), rest.x, radius);
 }
 
 fn segment_at(draw: u32, segment: u32) -> Segment {
     let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
-    let curve_index = knot_radii[knot].y;
-    var curve = curves[curve_index];
+    var curve = curves[knot_curve(knot)];
     curve.seed = hash_combine(draws[draw].seed, curve.seed);
     return segment_between(
         knot_at(draw, knot - 1u),

@@ -47,7 +47,7 @@ fn shadow(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_ind
     let view = shadow_views[view_index];
     let draw = find_draw(segment);
     let knot = draws[draw].first_knot + segment - draws[draw].first_segment;
-    if (knot_radii[knot].x & KNOT_BEGINS_SEGMENT) == 0u {
+    if !begins_segment(knot) {
         return;
     }
     let s = segment_at(draw, segment);

@@ -1,11 +1,8 @@
 // Precomputed tables of every yarn and material, one after the other.
 @group(0) @binding(8) var tables: texture_2d<u32>;
 
-// A power of two.
-const WORDS_IN_ROW: u32 = 4096u;
-
 fn table_word(index: u32) -> u32 {
-    return textureLoad(tables, vec2u(index % WORDS_IN_ROW, index / WORDS_IN_ROW), 0).x;
+    return textureLoad(tables, texel_at(index), 0).x;
 }
 
 fn table_value(index: u32) -> f32 {

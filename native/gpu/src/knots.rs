@@ -13,13 +13,13 @@ use crate::view::Bounds;
 /// Every curve has one knot more at its start and one (open) or two (closed) more at its end than its strand, so that the
 /// window of four knots about a segment never leaves the curve.
 pub(crate) struct RestKnots {
-    /// Length coordinate, as a 32-bit fraction of the curve's length.
-    pub lengths: Vec<u32>,
-    /// Radius as a 16-bit fraction of `radius_max` with flags, and curve.
-    pub radii: Vec<[u32; 2]>,
+    /// Length coordinate, as a 32-bit fraction of the curve's length; radius as a 16-bit fraction of `radius_max`, with flags.
+    pub rest: Vec<[u32; 2]>,
+    /// The curve of every knot.
+    pub curve: Vec<u32>,
     pub curves: Vec<layout::Curve>,
     pub radius_max: f64,
-    /// The first words of `radii`, which stay when those have gone to the GPU.
+    /// The second words of `rest`, which stay when those have gone to the GPU.
     radii_codes: Vec<u32>,
     /// For every padded knot, the strand's knot that it copies.
     source: Vec<u32>,
@@ -27,12 +27,10 @@ pub(crate) struct RestKnots {
     reflected: Vec<(u32, u32, u32)>,
 }
 
-/// What changes: positions and frames.
+/// What changes: positions and normals.
 pub(crate) struct MovingKnots {
-    /// Positions relative to `center`, three floats each.
-    pub positions: Vec<f32>,
-    /// Length coordinate and octahedral normal.
-    pub frames: Vec<[u32; 2]>,
+    /// Position relative to `center`, three floats, and octahedral normal.
+    pub knots: Vec<[u32; 4]>,
     pub center: DVec3,
     /// Of the centre lines, relative to `center`.
     pub bounds: Bounds,
@@ -60,8 +58,8 @@ impl RestKnots {
         let radius_max = f64::from(strands.radii().iter().copied().fold(0.0, f32::max));
         let padded = strands.positions().len() + 3 * strands.closed().len();
         let mut rest = Self {
-            lengths: Vec::with_capacity(padded),
-            radii: Vec::with_capacity(padded),
+            rest: Vec::with_capacity(padded),
+            curve: Vec::with_capacity(padded),
             curves: Vec::with_capacity(strands.closed().len()),
             radius_max,
             radii_codes: Vec::new(),
@@ -71,7 +69,7 @@ impl RestKnots {
         for curve in 0..strands.closed().len() {
             rest.add_curve(strands, yarn, curve);
         }
-        rest.radii_codes = rest.radii.iter().map(|[code, _]| *code).collect();
+        rest.radii_codes = rest.rest.iter().map(|[_, code]| *code).collect();
         rest
     }
 
@@ -100,9 +98,9 @@ impl RestKnots {
         let start = self.source.len() as u32;
         let mut push = |knot: usize, length: u32, begins: bool| {
             self.source.push(knot as u32);
-            self.lengths.push(length);
             let radius = (f64::from(strands.radii()[knot]) / self.radius_max * 65535.0).round() as u32;
-            self.radii.push([radius | if begins { KNOT_BEGINS_SEGMENT } else { 0 }, curve as u32]);
+            self.rest.push([length, radius | if begins { KNOT_BEGINS_SEGMENT } else { 0 }]);
+            self.curve.push(curve as u32);
         };
         if closed {
             push(end - 1, code(end - 1), false);
@@ -128,14 +126,13 @@ impl RestKnots {
         self.source.len()
     }
 
-    fn slenderness(&self, positions: &[f32]) -> f64 {
-        let at = |knot: usize| Vec3::from_slice(&positions[3 * knot..]);
+    fn slenderness(&self, positions: &[Vec3]) -> f64 {
         let ratio = |knot: usize| {
             if self.radii_codes[knot] & KNOT_BEGINS_SEGMENT == 0 {
                 return 0.0;
             }
             let radius = |k: usize| (self.radii_codes[k] & 0xffff).max(1) as f32 / 65535.0 * self.radius_max as f32;
-            at(knot).distance(at(knot + 1)) / radius(knot).max(radius(knot + 1))
+            positions[knot].distance(positions[knot + 1]) / radius(knot).max(radius(knot + 1))
         };
         f64::from((0..self.len()).map(ratio).fold(0.0, f32::max))
     }
@@ -145,20 +142,18 @@ impl RestKnots {
         strands.positions().iter().for_each(|p| bounds.include(Vec3::from(*p).as_dvec3()));
         let center = 0.5 * (bounds.min + bounds.max);
         let relative = |knot: u32| (Vec3::from(strands.positions()[knot as usize]).as_dvec3() - center).as_vec3();
-        let mut positions: Vec<f32> = Vec::with_capacity(3 * self.len());
-        self.source.iter().for_each(|knot| positions.extend(relative(*knot).to_array()));
+        let mut positions: Vec<Vec3> = self.source.iter().map(|knot| relative(*knot)).collect();
         for (end, inner, next) in &self.reflected {
-            for axis in 0..3 {
-                let at = |knot: &u32| 3 * *knot as usize + axis;
-                positions[at(end)] = 2.0 * positions[at(inner)] - positions[at(next)];
-            }
+            positions[*end as usize] = 2.0 * positions[*inner as usize] - positions[*next as usize];
         }
         let slenderness = self.slenderness(&positions);
         let normals = strands.normals();
-        let frame = |(knot, length): (&u32, &u32)| [*length, pack_unit_vector(normals[*knot as usize])];
+        let packed = |(position, knot): (&Vec3, &u32)| {
+            let [x, y, z] = position.to_array().map(f32::to_bits);
+            [x, y, z, pack_unit_vector(normals[*knot as usize])]
+        };
         MovingKnots {
-            positions,
-            frames: self.source.iter().zip(&self.lengths).map(frame).collect(),
+            knots: positions.iter().zip(&self.source).map(packed).collect(),
             center,
             bounds: Bounds { min: bounds.min - center, max: bounds.max - center },
             slenderness,

@@ -12,6 +12,7 @@ const SCENE: Files = files![
     "layout/scene.wgsl",
     "math/hash.wgsl",
     "math/pack.wgsl",
+    "math/texel.wgsl",
     "math/view.wgsl",
     "curve/segment.wgsl",
     "yarn/fiber.wgsl",
@@ -243,7 +244,8 @@ impl Pass {
             Self::Follow => vec![SCENE, WORK, files!["passes/follow.wgsl"]],
             // Without a scene.
             Self::MoveKnots => {
-                return joined(&[files!["math/pack.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"]]);
+                let own = files!["math/pack.wgsl", "math/texel.wgsl", "passes/work.wgsl", "passes/move_knots.wgsl"];
+                return joined(&[own]);
             }
         };
         parts.push(arrays);
@@ -422,7 +424,7 @@ mod tests {
             ("TURNS_KEPT", TURNS as f64),
             ("CORE_HOLE", HOLE.into()),
             ("CORE_PLACE_BITS", tables::CORE_PLACE_BITS.into()),
-            ("WORDS_IN_ROW", word_texture::WORDS_IN_ROW.into()),
+            ("TEXELS_IN_ROW", word_texture::TEXELS_IN_ROW.into()),
             ("HALF_WAY", HALF_WAY),
             ("SHARED_OVER_WIDTH", SHARED_OVER_WIDTH),
             ("TRANSPORT_LIGHT_LONGITUDES", size.light_longitudes as f64),

@@ -55,10 +55,9 @@ impl Place {
     }
 }
 
-/// Positions and frames of all curves at one time.
+/// Positions and normals of all curves at one time.
 pub(crate) struct Shape {
-    pub positions: wgpu::Buffer,
-    pub frames: wgpu::Buffer,
+    pub knots: WordTexture<[u32; 4]>,
     /// Of each set of curves.
     pub places: Vec<Place>,
 }
@@ -78,11 +77,12 @@ pub(crate) struct SceneBuffers {
     pub shape: Shape,
     /// Whether the shape is none that was uploaded, but one between two.
     pub displaced: bool,
-    pub radii: wgpu::Buffer,
+    pub rest_knots: WordTexture<[u32; 2]>,
+    pub knot_curves: WordTexture<u32>,
     pub curves: wgpu::Buffer,
     pub yarns: wgpu::Buffer,
     pub material_data: wgpu::Buffer,
-    pub tables: WordTexture,
+    pub tables: WordTexture<u32>,
     pub uploaded_bytes: u64,
 }
 
@@ -247,47 +247,45 @@ impl SceneBuffers {
 
     fn upload(gpu: &Gpu, sets: &[Set]) -> Result<Self, Error> {
         let mut first_knot = 0_u32;
-        let (mut radii, mut curves) = (Vec::new(), Vec::new());
-        let (mut positions, mut frames, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut rest_knots, mut knot_curves, mut curves) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut moving_knots, mut places) = (Vec::new(), Vec::new());
         let mut uploads = Vec::with_capacity(sets.len());
         for Set { yarns, yarn } in sets {
             let mut knots = RestKnots::new(yarns.strands(), yarn);
             let first_curve = curves.len() as u32;
             curves.append(&mut knots.curves);
-            radii.extend(knots.radii.drain(..).map(|[radius, curve]| [radius, curve + first_curve]));
+            rest_knots.append(&mut knots.rest);
+            knot_curves.extend(knots.curve.drain(..).map(|curve| curve + first_curve));
             let mut moving = knots.moving(yarns.strands());
             places.push(Place::of(&moving));
-            positions.append(&mut moving.positions);
-            frames.append(&mut moving.frames);
+            moving_knots.append(&mut moving.knots);
             let length = knots.len() as u32;
             let segment_count = knots.segment_count() as u64;
             uploads.push(Upload { yarns: Arc::clone(yarns), yarn: Arc::clone(yarn), knots, first_knot, segment_count });
             first_knot += length;
         }
-        let buffers = Self {
+        Ok(Self {
             uploads,
             kinds: Vec::new(),
             table_resolution: 0,
             materials: Vec::new(),
             transports: Vec::new(),
-            shape: Shape {
-                positions: storage(gpu, "control points (positions)", &positions)?,
-                frames: storage(gpu, "control points (frames)", &frames)?,
-                places,
-            },
+            shape: Shape { knots: WordTexture::writable(gpu, "control points", &moving_knots)?, places },
             displaced: false,
-            radii: storage(gpu, "control points (radii)", &radii)?,
+            rest_knots: WordTexture::new(gpu, "control points (lengths and radii)", &rest_knots)?,
+            knot_curves: WordTexture::new(gpu, "control points (curves)", &knot_curves)?,
             curves: storage(gpu, "curves", &curves)?,
             yarns: empty_array(gpu, "yarn kinds", 0)?,
             material_data: empty_array(gpu, "materials", 0)?,
             tables: WordTexture::new(gpu, "tables", &[])?,
-            uploaded_bytes: 0,
-        };
-        let uploaded_bytes = buffers.knot_bytes();
-        Ok(Self { uploaded_bytes, ..buffers })
+            uploaded_bytes: (size_of_val(&moving_knots[..])
+                + size_of_val(&rest_knots[..])
+                + size_of_val(&knot_curves[..])
+                + size_of_val(&curves[..])) as u64,
+        })
     }
 
-    /// The next frame of known yarns: positions and frames, and only of those that moved.
+    /// The next frame of known yarns: positions and normals, and only of those that moved.
     fn move_knots(&mut self, gpu: &Gpu, sets: &[Set]) {
         let displaced = std::mem::take(&mut self.displaced);
         for ((upload, place), Set { yarns, .. }) in self.uploads.iter_mut().zip(&mut self.shape.places).zip(sets) {
@@ -296,10 +294,8 @@ impl SceneBuffers {
             upload.yarns = Arc::clone(yarns);
             if moved {
                 let moving = upload.knots.moving(yarns.strands());
-                let first = u64::from(upload.first_knot);
-                gpu.queue.write_buffer(&self.shape.positions, 12 * first, bytemuck::cast_slice(&moving.positions));
-                gpu.queue.write_buffer(&self.shape.frames, 8 * first, bytemuck::cast_slice(&moving.frames));
-                self.uploaded_bytes += 20 * upload.knots.len() as u64;
+                self.shape.knots.write(gpu, upload.first_knot, &moving.knots);
+                self.uploaded_bytes += size_of_val(&moving.knots[..]) as u64;
                 *place = Place::of(&moving);
             }
         }
@@ -307,7 +303,7 @@ impl SceneBuffers {
 
     /// The same curves at another time, by a scene whose objects are those of the one that `parts` belong to.
     pub fn shape_of(&self, gpu: &Gpu, scene: &Scene, parts: &[ObjectParts]) -> Result<Shape, Error> {
-        let (mut positions, mut frames, mut places) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut knots, mut places) = (Vec::new(), Vec::new());
         for (set, upload) in self.uploads.iter().enumerate() {
             let of_set =
                 || parts.iter().zip(&scene.objects).filter(|(part, _)| part.set == set).map(|(_, object)| object);
@@ -318,14 +314,9 @@ impl SceneBuffers {
             }
             let mut moving = upload.knots.moving(first.yarns.strands());
             places.push(Place::of(&moving));
-            positions.append(&mut moving.positions);
-            frames.append(&mut moving.frames);
+            knots.append(&mut moving.knots);
         }
-        Ok(Shape {
-            positions: storage(gpu, "control points at another time (positions)", &positions)?,
-            frames: storage(gpu, "control points at another time (frames)", &frames)?,
-            places,
-        })
+        Ok(Shape { knots: WordTexture::new(gpu, "control points at another time", &knots)?, places })
     }
 
     /// Padded knots of all sets.
@@ -334,7 +325,7 @@ impl SceneBuffers {
     }
 
     pub fn knot_bytes(&self) -> u64 {
-        self.shape.positions.size() + self.shape.frames.size() + self.radii.size() + self.curves.size()
+        self.shape.knots.bytes() + self.rest_knots.bytes() + self.knot_curves.bytes() + self.curves.size()
     }
 
     pub fn table_bytes(&self) -> u64 {

@@ -230,14 +230,8 @@ impl<'a> Recorder<'a> {
             self.gpu.queue.write_buffer(&self.frame.pass_uniform, 0, bytemuck::cast_slice(&numbers));
             let mut encoder = self.encoder();
             let (x, y) = fold(knots.div_ceil(LANES));
-            let bound = [
-                (41, &earlier.positions),
-                (42, &later.positions),
-                (43, &earlier.frames),
-                (44, &later.frames),
-                (45, &buffers.shape.positions),
-                (46, &buffers.shape.frames),
-            ];
+            let bound =
+                [(41, earlier.knots.binding()), (42, later.knots.binding()), (43, buffers.shape.knots.binding())];
             self.record_with(&mut encoder, Pass::MoveKnots, &bound, |pass| pass.dispatch_workgroups(x, y, 1));
             self.timer.resolve(&mut encoder);
             self.gpu.submit(encoder);
@@ -247,13 +241,10 @@ impl<'a> Recorder<'a> {
 
     fn bindings(&self) -> Bindings<'a> {
         let (scene, frame) = (self.input.buffers, self.frame);
-        let buffers: [(u32, &wgpu::Buffer); 30] = [
+        let buffers: [(u32, &wgpu::Buffer); 27] = [
             (0, &frame.uniform),
             (1, &frame.draws),
             (2, &scene.curves),
-            (3, &scene.shape.positions),
-            (4, &scene.shape.frames),
-            (5, &scene.radii),
             (6, &scene.yarns),
             (7, &scene.material_data),
             (9, &frame.lights),
@@ -280,8 +271,13 @@ impl<'a> Recorder<'a> {
             (40, &frame.aovs),
         ];
         let mut bindings: Bindings = buffers.map(|(number, buffer)| (number, buffer.as_entire_binding())).into();
-        bindings.insert(8, scene.tables.binding());
-        bindings.insert(37, wgpu::BindingResource::TextureView(&frame.mesh_targets.seen));
+        bindings.extend([
+            (3, scene.shape.knots.binding()),
+            (4, scene.rest_knots.binding()),
+            (5, scene.knot_curves.binding()),
+            (8, scene.tables.binding()),
+            (37, wgpu::BindingResource::TextureView(&frame.mesh_targets.seen)),
+        ]);
         bindings
     }
 
@@ -530,7 +526,7 @@ impl<'a> Recorder<'a> {
         let view = self.first_view;
         self.follow_to(&view, f32::MIN, [here_word, VECTOR_WORDS], &[], pixels);
         for (neighbour, words) in [(before, [before_word, after_word]), (after, [after_word, VECTOR_WORDS])] {
-            let bound = [(1, &neighbour.draws), (3, &neighbour.shape.positions), (4, &neighbour.shape.frames)];
+            let bound = [(1, neighbour.draws.as_entire_binding()), (3, neighbour.shape.knots.binding())];
             let view = &neighbour.moment.view;
             self.follow_to(view, view.near as f32, words, &bound, pixels);
         }
@@ -538,7 +534,14 @@ impl<'a> Recorder<'a> {
     }
 
     /// The same in one frame; `words` are the first that it writes, and the end.
-    fn follow_to(&mut self, view: &View, near: f32, words: [u32; 2], bound: &[(u32, &wgpu::Buffer)], pixels: u32) {
+    fn follow_to(
+        &mut self,
+        view: &View,
+        near: f32,
+        words: [u32; 2],
+        bound: &[(u32, wgpu::BindingResource)],
+        pixels: u32,
+    ) {
         self.uniform.pixel_from_render = view.pixel_from_render([0.0; 2]);
         self.uniform.near = near;
         [self.uniform.frame_word, self.uniform.frame_word_end] = words;
@@ -559,16 +562,16 @@ impl<'a> Recorder<'a> {
         self.record_with(encoder, pass, &[], dispatch);
     }
 
-    /// The same with some buffers in place of the usual ones.
+    /// The same with some buffers and textures in place of the usual ones.
     fn record_with(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
         pass: Pass,
-        bound: &[(u32, &wgpu::Buffer)],
+        bound: &[(u32, wgpu::BindingResource)],
         dispatch: impl FnOnce(&mut wgpu::ComputePass),
     ) {
         let (mut bindings, gpu, pipelines) = (self.bindings(), self.gpu, self.pipelines);
-        bindings.extend(bound.iter().map(|(number, buffer)| (*number, buffer.as_entire_binding())));
+        bindings.extend(bound.iter().cloned());
         let timestamps = self.timer.begin(pass.entry_point());
         pipelines.record(gpu, encoder, (pass, self.arrays), &bindings, timestamps, dispatch);
     }
