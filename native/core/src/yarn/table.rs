@@ -69,15 +69,16 @@ impl FiberTable {
             let draw = |k| unit_from_hash(hash_combine(hash_combine(0x5f1b_e25a, tried), k));
             let radius = draw(0).sqrt();
             if draw(1) < radial_density(radius, yarn.density_beta, yarn.density_epsilon) {
-                fibers.push([radius, draw(2), draw(3)].map(|value| (value * STEPS).floor() / STEPS));
+                fibers.push([radius, draw(2), draw(3)]);
             }
             tried += 1;
         }
         fibers.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        let column = |k: usize| fibers.iter().map(|f| (f[k] * STEPS).floor() / STEPS).collect();
         Self {
-            radius: fibers.iter().map(|f| f[0]).collect(),
-            angle_turns: fibers.iter().map(|f| f[1]).collect(),
-            migration_turns: fibers.iter().map(|f| f[2]).collect(),
+            radius: column(0),
+            angle_turns: column(1),
+            migration_turns: column(2),
             acceptance: count as f64 / f64::from(tried),
         }
     }
