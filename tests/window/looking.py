@@ -14,6 +14,17 @@ bpy.data.objects['Yarn'].data.materials.append(material)
 """Gives the yarn a material of which there is no yarn."""
 
 
+def shows(view, place, keep=None, seconds=120):
+    """The display's pixels once something else than the viewport's corner stands at a place."""
+    left, top, _, _ = view.do("answer = rectangle()")
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        pixels = screen(view, keep)
+        if np.abs(at(pixels, place) - at(pixels, (left + 20, top + 20))).max() > 12:
+            return pixels
+    raise AssertionError(f"nothing at {place} after {seconds} s")
+
+
 def srgb(linear):
     """The 8-bit values of scene-linear ones, as the view transform Standard shows them."""
     linear = np.clip(np.asarray(linear, np.float64), 0, 1)
