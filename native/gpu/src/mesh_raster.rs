@@ -132,6 +132,13 @@ fn attachment(view: &wgpu::TextureView, store: wgpu::StoreOp) -> wgpu::RenderPas
     }
 }
 
+/// How large targets are: tiles of so many pixels, and shadow maps of so many texels along one side.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct TargetSizes {
+    pub tile: [u32; 2],
+    pub shadow: u32,
+}
+
 /// Textures that are drawn into.
 pub(crate) struct MeshTargets {
     /// Triangle + 1 and distance; a single texel, 0, where there are no meshes.
@@ -142,10 +149,15 @@ pub(crate) struct MeshTargets {
 }
 
 impl MeshTargets {
-    /// For tiles of up to `size` pixels and shadow maps of so many texels along one side.
-    pub fn new(gpu: &Gpu, size: [u32; 2], shadow_resolution: u32) -> Self {
+    /// `None` where there are no meshes. Then nothing may be drawn into them, not even to clear them: where anything was drawn, Mesa's
+    /// software driver keeps timestamps of compute passes back until the next one. wgpu clears by copies what has `COPY_DST`.
+    pub fn new(gpu: &Gpu, sizes: Option<TargetSizes>) -> Self {
+        let usage = match sizes {
+            Some(_) => wgpu::TextureUsages::RENDER_ATTACHMENT,
+            None => wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        };
+        let TargetSizes { tile, shadow } = sizes.unwrap_or(TargetSizes { tile: [1, 1], shadow: 1 });
         let texture = |label, [width, height]: [u32; 2], format| {
-            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
             gpu.device
                 .create_texture(&wgpu::TextureDescriptor {
                     label: Some(label),
@@ -160,10 +172,10 @@ impl MeshTargets {
                 .create_view(&wgpu::TextureViewDescriptor::default())
         };
         Self {
-            seen: texture("meshes that are seen", size, SEEN),
-            depth: texture("depth of meshes", size, DEPTH),
-            carrier: texture("size of a shadow map", [shadow_resolution; 2], CARRIER),
-            bytes: 12 * u64::from(size[0]) * u64::from(size[1]) + u64::from(shadow_resolution).pow(2),
+            seen: texture("meshes that are seen", tile, SEEN),
+            depth: texture("depth of meshes", tile, DEPTH),
+            carrier: texture("size of a shadow map", [shadow; 2], CARRIER),
+            bytes: 12 * u64::from(tile[0]) * u64::from(tile[1]) + u64::from(shadow).pow(2),
         }
     }
 

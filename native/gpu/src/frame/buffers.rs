@@ -4,7 +4,7 @@ use super::tiles::{TileLimits, most_of, tiles};
 use super::{BLOCK, FrameInput};
 use crate::arrays::{Arrays, empty_array};
 use crate::device::Gpu;
-use crate::mesh_raster::MeshTargets;
+use crate::mesh_raster::{MeshTargets, TargetSizes};
 use crate::upload::{Draws, SceneBuffers, empty_storage};
 use crate::{Error, layout, lights};
 
@@ -42,9 +42,7 @@ struct Capacity {
     lights: u64,
     views: u64,
     shadow_resolution: u32,
-    /// Of the targets of meshes.
-    tile: [u32; 2],
-    carrier: u32,
+    mesh_targets: Option<TargetSizes>,
 }
 
 impl FrameBuffers {
@@ -76,8 +74,7 @@ impl FrameBuffers {
             lights: u64::from(input.light_count()),
             views,
             shadow_resolution,
-            tile: if has_meshes { most_of(&tiles) } else { [1, 1] },
-            carrier: if has_meshes { shadow_resolution } else { 1 },
+            mesh_targets: has_meshes.then(|| TargetSizes { tile: most_of(&tiles), shadow: shadow_resolution }),
         };
         if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
             return Ok(buffers);
@@ -114,7 +111,7 @@ impl FrameBuffers {
             aovs: empty_storage(gpu, "passes", 4 * capacity.planes * capacity.pixels)?,
             meshes: uniform("meshes of a sample", size_of::<layout::Meshes>(), wgpu::BufferUsages::STORAGE),
             mesh_draws: empty_storage(gpu, "meshes", capacity.meshes * size_of::<layout::MeshDraw>() as u64)?,
-            mesh_targets: MeshTargets::new(gpu, capacity.tile, capacity.carrier),
+            mesh_targets: MeshTargets::new(gpu, capacity.mesh_targets),
             capacity,
         })
     }
