@@ -85,16 +85,19 @@ fn seen_point(yarn: Yarn, section: SectionPoint, view: vec3f) -> SeenPoint {
     return SeenPoint(section, v.unit, self_depth(yarn, section.position, v.unit), 0.5 * extinction * yarn.fiber_radius);
 }
 
-// What two parallel rays to even places on a fiber's width share of their depths: SHARED_OVER_WIDTH of native/precompute/src/self_shadow.rs.
-const SHARED_OVER_WIDTH: f32 = 2.0 / 3.0;
+// Depth that parallel rays to two places on a fiber's width have in common: shared_over_width of native/precompute/src/self_shadow.rs.
+fn shared_over_width(depth: f32) -> f32 {
+    // To first order where the difference has too few digits left.
+    let d = max(depth, 0.05);
+    return select(depth + log(2.0 * (d - 1.0 + exp(-d)) / (d * d)), depth * (2.0 / 3.0), depth < 0.05);
+}
 
-// Share of a light in the section's direction `l` that the yarn's own fibers let through to a place in it.
-fn share_let_through(yarn: Yarn, seen: SeenPoint, at: vec2f, l: vec2f, shared_depth: f32) -> f32 {
-    let depth = self_depth(yarn, at, l);
+// Share of a light in the section's direction `l` that the yarn's own fibers let through to a place with that depth towards the light.
+fn share_let_through(seen: SeenPoint, l: vec2f, depth: f32, shared_depth: f32) -> f32 {
     // Not acos of their product, which is coarse where they nearly agree.
     let half = asin(min(0.5 * length(l - seen.view), 1.0));
     let in_common = seen.common_depth * (1.0 / max(tan(half), 1e-6) - 0.5 * PI + half);
-    let most = max(shared_depth * min(depth, seen.depth_to_viewer), 1e-9);
+    let most = max(shared_depth, 1e-9);
     return exp(most * (1.0 - exp(-in_common / most)) - depth);
 }
 
@@ -113,9 +116,11 @@ fn self_shadows(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> SelfShadow {
     }
     let q = seen.section.position;
     let entry = q + 0.25 * PI * yarn.fiber_radius * (l.unit - seen.view);
+    let to_point = self_depth(yarn, q, l.unit);
+    let to_width = self_depth(yarn, entry, l.unit);
     return SelfShadow(
-        share_let_through(yarn, seen, q, l.unit, 1.0),
-        share_let_through(yarn, seen, entry, l.unit, SHARED_OVER_WIDTH),
+        share_let_through(seen, l.unit, to_point, min(to_point, seen.depth_to_viewer)),
+        share_let_through(seen, l.unit, to_width, shared_over_width(min(to_width, seen.depth_to_viewer))),
     );
 }
 

@@ -403,7 +403,7 @@ mod tests {
     /// Constants that are written both here and in WGSL.
     fn shared_constants() -> Vec<(&'static str, f64)> {
         use crate::{aov, cryptomatte, frame, layout, tables, word_texture};
-        use lisle_precompute::{HALF_WAY, HOLE, SHARED_OVER_WIDTH, TURNS, Transport, TransportSize};
+        use lisle_precompute::{HALF_WAY, HOLE, TURNS, Transport, TransportSize};
         let size = TransportSize::ALL;
         vec![
             ("KNOT_BEGINS_SEGMENT", layout::KNOT_BEGINS_SEGMENT.into()),
@@ -426,7 +426,6 @@ mod tests {
             ("CORE_PLACE_BITS", tables::CORE_PLACE_BITS.into()),
             ("TEXELS_IN_ROW", word_texture::TEXELS_IN_ROW.into()),
             ("HALF_WAY", HALF_WAY),
-            ("SHARED_OVER_WIDTH", SHARED_OVER_WIDTH),
             ("TRANSPORT_LIGHT_LONGITUDES", size.light_longitudes as f64),
             ("TRANSPORT_LIGHT_AZIMUTHS", size.light_azimuths as f64),
             ("TRANSPORT_RINGS", size.rings as f64),

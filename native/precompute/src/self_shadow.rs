@@ -53,8 +53,17 @@ pub struct SelfShadow {
 pub const HALF_WAY: f64 = 0.2;
 const SEEN_SKY_SIZE: usize = 32;
 
-/// What two parallel rays to even places on a fiber's width share of their depths, [`SelfShadow::over_width_of_seen`].
-pub const SHARED_OVER_WIDTH: f64 = 2.0 / 3.0;
+/// Depth that parallel rays to two places on a fiber's width have in common, as far as the light goes that both let through, if each has `depth`; [`SelfShadow::over_width_of_seen`].
+///
+/// At places x and y, each even on the width 2r, a fiber that covers one covers the other with a chance of 1 − |x − y| / 2r: of what lets y through,
+/// e^(−|x − y| depth / 2r) lets x through, on average 2 (depth − 1 + e^−depth) / depth².
+fn shared_over_width(depth: f64) -> f64 {
+    // Where the difference has no digits left: to first order.
+    if depth < 0.02 {
+        return depth * (2.0 / 3.0);
+    }
+    depth + (2.0 * (depth - 1.0 + (-depth).exp()) / (depth * depth)).ln()
+}
 
 /// Depth that a ray to a light has in common with the ray to the viewer, `angle` radians from it; at most `most`. `unit` is σ r/2.
 fn in_common(unit: f64, angle: f64, most: f64) -> f64 {
@@ -163,13 +172,13 @@ impl SelfShadow {
     ///
     /// Such light enters on the side that faces it, not at q. Over a width that is drawn evenly, an edge is on average πr/4 before the axis, so that
     /// the mean place where light enters is πr/4 (l − v) from the mean place that is seen. Nor do the two rays share all of their way if light and viewer are in one
-    /// direction: at places x and y on the width, each even in [−r, r], a fiber that covers one covers the other with a chance of 1 − |x − y| / 2r, on average ⅔.
+    /// direction: [`shared_over_width`].
     pub fn over_width_of_seen(&self, psi_light: f64, psi_view: f64, q: DVec2) -> f64 {
         let apart = DVec2::from_angle(psi_light) - DVec2::from_angle(psi_view);
         let entry = q + 0.25 * PI * f64::from(self.fiber_radius) * apart;
         let (light, view) = (self.at(psi_light, entry), self.at(psi_view, q));
         let angle = 2.0 * (0.5 * apart.length()).min(1.0).asin();
-        light - in_common(self.unit_in_common(q), angle, SHARED_OVER_WIDTH * light.min(view))
+        light - in_common(self.unit_in_common(q), angle, shared_over_width(light.min(view)))
     }
 
     /// Share of the sky that is open to a point that a viewer sees, above the mean over points there, seen or not; `sky_of_seen` in shaders.
@@ -220,7 +229,7 @@ mod tests {
         let (dealer, mut random) = (Sections::new(yarn), Random::new(5));
         let radius = yarn.fiber_radius / yarn.outer_radius();
         let mut bins = [(0.0, 0.0, 0.0); BINS];
-        for _ in 0..1000 {
+        for _ in 0..4000 {
             let fibers = dealer.draw(&mut random);
             for _ in 0..40 {
                 let q = DVec2::from_angle(TAU * random.unit()) * random.unit().sqrt();
@@ -380,7 +389,7 @@ mod tests {
         for name in PRESET_NAMES {
             let yarn = without_flyaways(&Yarn::preset(name).expect(name));
             let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
-            let found = over_width(&yarn, &WIDTH_DEG, 1500, |s| {
+            let found = over_width(&yarn, &WIDTH_DEG, 6000, |s| {
                 (-table.over_width_of_seen(s.psi_light, s.psi_view, s.q)).exp()
             });
             for (angle, expected, predicted) in found {
@@ -390,7 +399,7 @@ mod tests {
                 assert!((predicted - expected).abs() < 0.02, "{name}, {angle}°: {predicted} for {expected}");
             }
             // What is right for the point that is seen is rejected.
-            let point = over_width(&yarn, &WIDTH_DEG, 1500, |s| {
+            let point = over_width(&yarn, &WIDTH_DEG, 6000, |s| {
                 (-table.toward_light_of_seen(s.psi_light, s.psi_view, s.q)).exp()
             });
             worst_point = point.iter().map(|(_, e, p)| (e - p).abs()).fold(worst_point, f64::max);
