@@ -1,24 +1,27 @@
 // Shadow of a yarn's fibers on each other, and its ambient occlusion [WuYuksel2018 §4.1, §4.2].
 
-// A point of a yarn's section, in units of the yarn's radius, in the frame that turns with the plies.
-struct SectionPoint {
-    position: vec2f,
-    // Directions of its axes, render space.
-    x: vec3f,
-    y: vec3f,
-}
-
-// In the frame of any of the plies: the section repeats from ply to ply.
-fn section_point(center: vec3f, radius: f32, radial: vec3f, tangential: vec3f, position: vec3f) -> SectionPoint {
-    let offset = position - center;
-    return SectionPoint(vec2f(dot(offset, radial), dot(offset, tangential)) / radius, radial, tangential);
-}
-
 // The yarn as a tube about a point of its centre line.
 struct Tube {
     center: vec3f,
     radius: f32,
     tangent: vec3f,
+}
+
+// A point of a yarn's section, in units of the yarn's radius, in the frame that turns with the plies.
+struct SectionPoint {
+    position: vec2f,
+    // Directions of its axes and of the yarn, render space.
+    x: vec3f,
+    y: vec3f,
+    yarn_axis: vec3f,
+    // Angle by which the plies turn per radius along the yarn.
+    winding: f32,
+}
+
+// In the frame of any of the plies: the section repeats from ply to ply.
+fn section_point(tube: Tube, radial: vec3f, tangential: vec3f, winding: f32, position: vec3f) -> SectionPoint {
+    let offset = position - tube.center;
+    return SectionPoint(vec2f(dot(offset, radial), dot(offset, tangential)) / tube.radius, radial, tangential, tube.tangent, winding);
 }
 
 // How far along `direction` a point must go to have the tube behind it: all of it that lies within `reach` beside the way, since texels of a

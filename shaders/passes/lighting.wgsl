@@ -53,6 +53,33 @@ fn section_direction(section: SectionPoint, direction: vec3f) -> SectionDirectio
     return SectionDirection(in_section / max(size, 1e-6), size);
 }
 
+// What of a direction lies across threads that move across the section by `slope` per length along the yarn: in a section that moves along with them, a ray goes there.
+fn direction_across(section: SectionPoint, slope: vec2f, direction: vec3f) -> SectionDirection {
+    let across = vec2f(dot(direction, section.x), dot(direction, section.y)) - slope * dot(direction, section.yarn_axis);
+    let size = length(across);
+    return SectionDirection(across / max(size, 1e-6), size);
+}
+
+// Direction of a ray's way out of the yarn in a section that turns with the plies. There the way is bent; what lies near decides, so that it goes as a quarter of the way
+// to the yarn's border: beside the reference, light along the yarn was 5 to 9 % off with none of this, 2 to 6 % with the direction at the point, 1 to 4 % so, and 3 to 9 % half way.
+fn direction_out(section: SectionPoint, direction: vec3f) -> vec2f {
+    let l = section_direction(section, direction).unit;
+    let q = section.position;
+    let before = dot(q, l);
+    let quarter_way = 0.25 * (sqrt(max(before * before + 1.0 - dot(q, q), 0.0)) - before);
+    let at = q + l * max(quarter_way, 0.0);
+    return direction_across(section, section.winding * vec2f(-at.y, at.x), direction).unit;
+}
+
+// Most slope of a fiber: a hair may go straight away from its yarn.
+const MOST_SLOPE: f32 = 4.0;
+
+fn fiber_slope(section: SectionPoint, tangent: vec3f) -> vec2f {
+    let along = max(abs(dot(tangent, section.yarn_axis)), 1e-3);
+    let slope = vec2f(dot(tangent, section.x), dot(tangent, section.y)) / along;
+    return slope * min(1.0, MOST_SLOPE / max(length(slope), 1e-6));
+}
+
 // Optical depth of the yarn's own fibers from a point towards a direction [WuYuksel2018 §4.1].
 fn self_depth(yarn: Yarn, q: vec2f, l: vec2f) -> f32 {
     // The table's light shines along its x axis.
@@ -73,16 +100,27 @@ fn self_depth(yarn: Yarn, q: vec2f, l: vec2f) -> f32 {
 // What a point's lights share: it is seen, so that no fiber lies between it and the viewer.
 struct SeenPoint {
     section: SectionPoint,
+    // Slope of its fiber.
+    slope: vec2f,
+    // Of the direction to the viewer: in the section, and across the fiber.
     view: vec2f,
+    view_across: vec2f,
     depth_to_viewer: f32,
     // sigma r / 2.
     common_depth: f32,
 }
 
-fn seen_point(yarn: Yarn, section: SectionPoint, view: vec3f) -> SeenPoint {
-    let v = section_direction(section, view);
+fn seen_point(yarn: Yarn, section: SectionPoint, tangent: vec3f, view: vec3f) -> SeenPoint {
+    let slope = fiber_slope(section, tangent);
     let extinction = square_table(yarn.extinction_table, yarn.shadow_size, yarn.shadow_extent, section.position);
-    return SeenPoint(section, v.unit, self_depth(yarn, section.position, v.unit), 0.5 * extinction * yarn.fiber_radius);
+    return SeenPoint(
+        section,
+        slope,
+        section_direction(section, view).unit,
+        direction_across(section, slope, view).unit,
+        self_depth(yarn, section.position, direction_out(section, view)),
+        0.5 * extinction * yarn.fiber_radius,
+    );
 }
 
 // Depth that parallel rays to two places on a fiber's width have in common: shared_over_width of native/precompute/src/self_shadow.rs.
@@ -93,9 +131,10 @@ fn shared_over_width(depth: f32) -> f32 {
 }
 
 // Share of a light in the section's direction `l` that the yarn's own fibers let through to a place with that depth towards the light.
+// `l`: across the fiber.
 fn share_let_through(seen: SeenPoint, l: vec2f, depth: f32, shared_depth: f32) -> f32 {
     // Not acos of their product, which is coarse where they nearly agree.
-    let half = asin(min(0.5 * length(l - seen.view), 1.0));
+    let half = asin(min(0.5 * length(l - seen.view_across), 1.0));
     let in_common = seen.common_depth * (1.0 / max(tan(half), 1e-6) - 0.5 * PI + half);
     let most = max(shared_depth, 1e-9);
     return exp(most * (1.0 - exp(-in_common / most)) - depth);
@@ -110,14 +149,15 @@ struct SelfShadow {
 }
 
 fn self_shadows(yarn: Yarn, seen: SeenPoint, direction: vec3f) -> SelfShadow {
-    let l = section_direction(seen.section, direction);
+    let l = direction_across(seen.section, seen.slope, direction);
     if l.size < 1e-4 {
         return SelfShadow(1.0, 1.0);
     }
     let q = seen.section.position;
-    let entry = q + 0.25 * PI * yarn.fiber_radius * (l.unit - seen.view);
-    let to_point = self_depth(yarn, q, l.unit);
-    let to_width = self_depth(yarn, entry, l.unit);
+    let entry = q + 0.25 * PI * yarn.fiber_radius * (l.unit - seen.view_across);
+    let way = direction_out(seen.section, direction);
+    let to_point = self_depth(yarn, q, way);
+    let to_width = self_depth(yarn, entry, way);
     return SelfShadow(
         share_let_through(seen, l.unit, to_point, min(to_point, seen.depth_to_viewer)),
         share_let_through(seen, l.unit, to_width, shared_over_width(min(to_width, seen.depth_to_viewer))),

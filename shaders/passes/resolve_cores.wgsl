@@ -63,7 +63,7 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     let tangent = carried(straight, p.tangent, axis_tangent);
     let normal = fiber_normal(tangent, c.side, view, surface.offset);
     let tube = Tube(p.position + (p.velocity + 0.5 * ahead * p.acceleration) * ahead, p.radius, axis_tangent);
-    return Surface(tube, radial, tangential, position, tangent, normal, parts.segment, t);
+    return Surface(tube, radial, tangential, c.ply.angle_rate * per_length * p.radius, position, tangent, normal, parts.segment, t);
 }
 
 @compute @workgroup_size(64)

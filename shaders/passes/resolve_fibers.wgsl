@@ -56,7 +56,8 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
     let sine = length(side);
     let outward = side * (select(-1.0, 1.0, grows) * x / max(sine, 1e-6));
     let position = center + radius * (outward + view * (sqrt(1.0 - x * x) * min(1.0 / max(sine, 1e-6), MOST_LEAN)));
-    return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, position, tangent, normal, parts.segment, t);
+    let winding = q.angle_rate * p.radius / max(dot(p.velocity, p.tangent), 1e-20);
+    return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, winding, position, tangent, normal, parts.segment, t);
 }
 
 @compute @workgroup_size(64)

@@ -5,6 +5,8 @@ struct Surface {
     // Section axes of the fiber's ply.
     radial: vec3f,
     tangential: vec3f,
+    // Angle by which they turn per radius along the yarn.
+    winding: f32,
     position: vec3f,
     tangent: vec3f,
     normal: vec3f,
@@ -191,8 +193,8 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     let yarn = yarns[draws[draw].yarn];
     let material = materials[draws[draw].material];
     let view = direction_to_viewer(frame.viewer, surface.position);
-    let section = section_point(surface.tube.center, surface.tube.radius, surface.radial, surface.tangential, surface.position);
-    let seen = seen_point(yarn, section, view);
+    let section = section_point(surface.tube, surface.radial, surface.tangential, surface.winding, surface.position);
+    let seen = seen_point(yarn, section, surface.tangent, view);
     let even_lobes = even_light(material, dot(surface.tangent, view));
     let even = even_lobes.around + even_lobes.through;
     let own_sky = self_sky(yarn, seen);

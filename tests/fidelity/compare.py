@@ -73,6 +73,8 @@ class Result:
     """Mean colour with levels of detail against that with every fiber, by the renderer alone."""
     every_fiber: float
     """Mean error of single scattering with every fiber drawn."""
+    every_fiber_flip: float
+    """FLIP of the same: what core fibers are not to blame for."""
     fine_tables: float
     """The same with tables of self-shadow and occlusion four times as fine."""
     fine_shadows: float | None
@@ -135,13 +137,15 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
         return measures.mean_error(colour(draw(lod_pixels=0, **options)), expected)
 
     shadowed = case.light in models.SUNS and case.model != "straight"
+    once = pair(rendered, single)
     return Result(
         case,
-        pair(rendered, single),
+        once,
         pair(all_orders, multiple),
         alpha / float(single["alpha"].mean(dtype=np.float64)) - 1,
         measures.mean_error(colour(rendered[0]), full),
         measures.mean_error(full, expected),
+        measures.flip(full, expected, once.covered)[0],
         error(table_resolution=4),
         error(shadow_resolution=8192) if shadowed else None,
         error(occlusion="table") if case.light == "sky" else None,

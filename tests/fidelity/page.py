@@ -24,6 +24,7 @@ COLUMNS = (
     "coverage %",
     "detail %",
     "every fiber %",
+    "its FLIP",
     "fine tables %",
     "fine shadows %",
     "table occlusion %",
@@ -64,9 +65,10 @@ def _measures(pair: Pair) -> list[str]:
 
 def row(result: Result) -> Row:
     """Of `COLUMNS`."""
-    ablations = (result.coverage, result.detail, result.every_fiber, result.fine_tables)
-    ablations += (result.fine_shadows, result.table_occlusion)
-    return [str(result.case), *_measures(result.single), *map(percent, ablations), *_measures(result.multiple)]
+    drawn = (result.coverage, result.detail, result.every_fiber)
+    finer = (result.fine_tables, result.fine_shadows, result.table_occlusion)
+    ablations = [*map(percent, drawn), f"{result.every_fiber_flip:.3f}", *map(percent, finer)]
+    return [str(result.case), *_measures(result.single), *ablations, *_measures(result.multiple)]
 
 
 def hot_spot_row(angle: int, yarn: float, noise: float, one: float, one_noise: float) -> Row:

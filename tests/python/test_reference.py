@@ -362,3 +362,29 @@ def test_a_lens_blurs_the_same(scene, renderer):
     np.testing.assert_array_equal(blurred["depth"], sharp["depth"])
     mean = [image["combined"][..., :3].mean() for image in (blurred, sharp)]
     assert mean[0] == pytest.approx(mean[1], rel=0.03)
+
+
+@pytest.mark.parametrize("name", ["cotton-2", "rayon-4"])
+def test_light_along_a_yarn_meets_its_twist(renderer, name):
+    """Such light goes across fibers that are wound towards it, along those that are wound away: of two suns that are
+    mirrored, one reaches more of a yarn. Straight yarns of one or the other twist, every fiber drawn, light scattered once."""
+    x = np.linspace(-24, 24, 49)
+    points = np.concatenate([np.column_stack([x, 0 * x, 0 * x + 4.0 * row]) for row in range(-4, 5)])
+    yarns = lisle.Yarns(points, np.arange(10) * len(x), yarn_radius=1.0)
+    yarn = lisle.Yarn.preset(name).replace(loop_density=0.0, hair_density=0.0)
+    camera = lisle.Camera.fit(yarns, direction=(0, -1, 0), size=(96, 72))
+    means = []
+    for along in (0.7, -0.7):
+        scene = lisle.Scene(camera, [lisle.Sun(direction=(along, 1.0, -0.4), strength=3.0)])
+        scene.add(yarns, yarn, lisle.Material.preset("fleece"))
+        pictures = (
+            renderer.render(scene, samples=32, lod_pixels=0, transport_photons=0),
+            draw(scene, samples=32, bounces=1),
+        )
+        means.append([float(picture["combined"][..., :3].mean(dtype=np.float64)) for picture in pictures])
+    rendered, expected = np.array(means).T
+    print(rendered / expected, rendered[0] / rendered[1], expected[0] / expected[1])
+    assert np.abs(rendered / expected - 1).max() < 0.06
+    assert abs(rendered[0] / rendered[1] / (expected[0] / expected[1]) - 1) < 0.05
+    # Where the other sun's is taken, the comparison sees it.
+    assert abs(rendered[1] / rendered[0] / (expected[0] / expected[1]) - 1) > 0.1

@@ -5,7 +5,7 @@ use glam::{DVec2, Vec4};
 use lisle_core::sampling::{hash_combine, unit_from_hash};
 use lisle_core::scattering::{Material, ScatteringTables};
 use lisle_core::yarn::{PRESET_NAMES, Yarn};
-use lisle_precompute::Tables;
+use lisle_precompute::{SeenFrom, Tables};
 
 use crate::arrays::Arrays;
 use crate::device::Gpu;
@@ -26,6 +26,7 @@ struct Query {
     viewer: Vec4,
     light: Vec4,
     place: Vec4,
+    tangent: Vec4,
 }
 
 /// What is compared, in the order of the shader's answers.
@@ -64,26 +65,41 @@ fn queries() -> Vec<Query> {
         let light_turns = if k.is_multiple_of(4) { viewer_turns + 0.05 * (unit(1) - 0.5) } else { unit(1) };
         let place = turn(unit(2)) * (REACH * unit(3).sqrt());
         let sin_theta = 1.9998 * (unit(4) - 0.5);
+        // A third is not wound.
+        let wound = if k.is_multiple_of(3) { 0.0 } else { 1.0 };
+        let fiber = turn(unit(7)) * (wound * 0.8 * unit(8));
         Query {
             viewer: slanted(turn(viewer_turns), 1.8 * (unit(5) - 0.5)),
             light: slanted(turn(light_turns), 1.8 * (unit(6) - 0.5)),
-            place: place.extend(sin_theta).extend(0.0).as_vec4(),
+            place: place.extend(sin_theta).extend(wound * 2.4 * (unit(9) - 0.5)).as_vec4(),
+            tangent: fiber.extend((1.0 - fiber.length_squared()).sqrt()).extend(0.0).as_vec4(),
         }
     };
     (0..COUNT).map(query).collect()
 }
 
 fn expected(yarn: &Tables, material: &ScatteringTables, query: &Query) -> [f64; VALUES.len()] {
-    let psi = |v: Vec4| f64::from(v.y).atan2(f64::from(v.x));
-    let (light, view) = (psi(query.light), psi(query.viewer));
+    let angle = |v: DVec2| v.y.atan2(v.x);
     let q = DVec2::new(f64::from(query.place.x), f64::from(query.place.y));
     let theta = f64::from(query.place.z).asin();
+    let across = |v: Vec4, slope: DVec2| v.as_dvec4().truncate().truncate() - slope * f64::from(v.z);
+    let tangent = query.tangent.as_dvec4();
+    let fiber_slope = DVec2::new(tangent.x, tangent.y) / tangent.z;
+    let way = |v: Vec4| {
+        let l = across(v, DVec2::ZERO).normalize();
+        let to_border = (q.dot(l).powi(2) + 1.0 - q.length_squared()).max(0.0).sqrt() - q.dot(l);
+        let at = q + l * (0.25 * to_border).max(0.0);
+        angle(across(v, at.perp() * f64::from(query.place.w)))
+    };
+    let directions = [query.light, query.viewer];
+    let from = SeenFrom { ways: directions.map(way), across: directions.map(|v| angle(across(v, fiber_slope))) };
+    let [light, view] = from.ways;
     let (table, sky) = (&yarn.self_shadow, &yarn.occlusion);
     let (seen, integrals, ambient) = (table.sky_of_seen(view, q), material.normalizers(theta), material.ambient(theta));
     [
         table.at(light, q),
-        (-table.toward_light_of_seen(light, view, q)).exp(),
-        (-table.over_width_of_seen(light, view, q)).exp(),
+        (-table.toward_light_of_seen(from, q)).exp(),
+        (-table.over_width_of_seen(from, q)).exp(),
         seen,
         sky.at(q),
         sky.at_distance(q),
@@ -236,8 +252,15 @@ fn a_wrong_lookup_is_noticed() {
         ("fract(atan2(l.y, l.x) / TAU * f32(yarn.plies))", "fract(-atan2(l.y, l.x) / TAU * f32(yarn.plies))"),
         ("(slice + 1u) % yarn.shadow_slices", "slice"),
         ("0.5 * extinction * yarn.fiber_radius", "0.6 * extinction * yarn.fiber_radius"),
-        ("share_let_through(yarn, seen, q, l.unit, 1.0)", "share_let_through(yarn, seen, q, l.unit, 0.9)"),
-        ("0.25 * PI * yarn.fiber_radius * (l.unit - seen.view)", "0.25 * PI * yarn.fiber_radius * l.unit"),
+        ("shared_over_width(min(to_width, seen.depth_to_viewer))", "0.67 * min(to_width, seen.depth_to_viewer)"),
+        ("to_point, min(to_point, seen.depth_to_viewer)", "to_point, 0.9 * min(to_point, seen.depth_to_viewer)"),
+        ("section.winding * vec2f(-at.y, at.x)", "section.winding * vec2f(at.y, -at.x)"),
+        ("let quarter_way = 0.25 *", "let quarter_way = 0.3 *"),
+        (
+            "direction_across(seen.section, seen.slope, direction)",
+            "direction_across(seen.section, -seen.slope, direction)",
+        ),
+        ("0.25 * PI * yarn.fiber_radius * (l.unit - seen.view_across)", "0.25 * PI * yarn.fiber_radius * l.unit"),
         ("sqrt(share.y)", "share.y"),
         ("min(length(section.position), yarn.occlusion_extent)", "min(length(section.position), 1.0)"),
         ("material_table(material, 1u, sin_theta_i)", "material_table(material, 0u, sin_theta_i)"),

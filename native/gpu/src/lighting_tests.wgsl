@@ -4,8 +4,10 @@ struct LightingQuery {
     // Along the section's first two axes; the yarn's is the third.
     viewer: vec4f,
     light: vec4f,
-    // Place in the section, and sin θ on a fiber.
+    // Place in the section, sin θ on a fiber, and the turn of the plies per radius along the yarn.
     place: vec4f,
+    // Direction of the fiber.
+    tangent: vec4f,
 }
 
 struct LightingAnswer {
@@ -31,8 +33,8 @@ fn answer_queries(@builtin(global_invocation_id) id: vec3u) {
     }
     let query = queries[id.x];
     let yarn = yarns[0];
-    let section = SectionPoint(query.place.xy, vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0));
-    let seen = seen_point(yarn, section, query.viewer.xyz);
+    let section = SectionPoint(query.place.xy, vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), vec3f(0.0, 0.0, 1.0), query.place.w);
+    let seen = seen_point(yarn, section, query.tangent.xyz, query.viewer.xyz);
     let shadows = self_shadows(yarn, seen, query.light.xyz);
     frame.occlusion_table = 0u;
     let distance = self_occlusion(yarn, section);
@@ -40,7 +42,7 @@ fn answer_queries(@builtin(global_invocation_id) id: vec3u) {
     let normalizers = normalizers_at(materials[0], query.place.z);
     let ambient = ambient_factors(materials[0], query.place.z);
     answers[id.x] = LightingAnswer(
-        self_depth(yarn, query.place.xy, section_direction(section, query.light.xyz).unit),
+        self_depth(yarn, query.place.xy, direction_out(section, query.light.xyz)),
         shadows.point,
         shadows.width,
         sky_of_seen(yarn, seen),

@@ -170,11 +170,11 @@ fn a_ply_with_a_core_has_the_colour_of_its_fibers() {
             ("from above", sun([0.4, 0.2, -1.0], 3.0)),
             ("no sun, the sky alone", sun([0.3, -1.0, -0.4], 0.0)),
         ] {
-            let full = ply(name, 0.0, light, 2, photons);
+            let full = ply(name, 0.0, light, 4, photons);
             for lod_pixels in [1.0, 12.0] {
                 let merged = ply(name, lod_pixels, light, 1, photons);
                 let error = color_error(&merged, &full);
-                let area = 4.0 * measure::area(&merged) / measure::area(&full) - 1.0;
+                let area = 16.0 * measure::area(&merged) / measure::area(&full) - 1.0;
                 println!(
                     "{name}, {photons} photons, {light_name}, {lod_pixels} px: colour off by {:.2} %, area {:+.2} %, {} fibers of {}",
                     100.0 * error,

@@ -16,6 +16,6 @@ mod transport;
 pub use core_fiber::{CoreFiber, HOLE, TURNS};
 pub use density::SectionDensity;
 pub use occlusion::Occlusion;
-pub use self_shadow::{HALF_WAY, SelfShadow};
+pub use self_shadow::{HALF_WAY, SeenFrom, SelfShadow};
 pub use tables::Tables;
 pub use transport::{Transport, TransportSize, TransportStore};

@@ -49,6 +49,30 @@ pub struct SelfShadow {
     pub tube_radius: f32,
 }
 
+/// Directions from a point that is seen, as angles in the section, radians.
+///
+/// Fibers that are wound move across the section along the yarn, and a light or viewer may be along it as well: what a ray does among fibers is what it does in a section
+/// that moves along with them.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenFrom {
+    /// Ways through the yarn, in a section that turns with its plies: to the light and to the viewer.
+    pub ways: [f64; 2],
+    /// The same across the fiber that the point lies on.
+    pub across: [f64; 2],
+}
+
+impl SeenFrom {
+    /// Light and viewer in the section, where nothing moves.
+    pub fn in_section(psi_light: f64, psi_view: f64) -> Self {
+        Self { ways: [psi_light, psi_view], across: [psi_light, psi_view] }
+    }
+
+    fn angle(&self) -> f64 {
+        let [light, view] = self.across;
+        2.0 * (0.5 * (light - view)).sin().abs().asin()
+    }
+}
+
 /// c in the middle of the squared y axis of [`SelfShadow::seen_sky`].
 pub const HALF_WAY: f64 = 0.2;
 const SEEN_SKY_SIZE: usize = 32;
@@ -162,10 +186,9 @@ impl SelfShadow {
     /// the depth is to be left out (the \"hot spot\" of canopies of leaves [Kuusk1991]). A fiber of radius r blocks both rays if its centre lies within r of
     /// either, which for rays at an angle 2h is an area r² (cot h − (π/2 − h)), without that of fibers which contain the point itself. At a
     /// density of σ / 2r that is σ r/2 (cot h − π/2 + h) fibers, for a σ that is even around the point; they cannot be more than either ray meets in all.
-    pub fn toward_light_of_seen(&self, psi_light: f64, psi_view: f64, q: DVec2) -> f64 {
-        let (light, view) = (self.at(psi_light, q), self.at(psi_view, q));
-        let angle = 2.0 * (0.5 * (psi_light - psi_view)).sin().abs().asin();
-        light - in_common(self.unit_in_common(q), angle, light.min(view))
+    pub fn toward_light_of_seen(&self, from: SeenFrom, q: DVec2) -> f64 {
+        let [light, view] = from.ways.map(|psi| self.at(psi, q));
+        light - in_common(self.unit_in_common(q), from.angle(), light.min(view))
     }
 
     /// Optical depth towards a light for a fiber that a viewer sees at q, for light that it takes in over its width; the same as in `self_shadows`.
@@ -173,12 +196,11 @@ impl SelfShadow {
     /// Such light enters on the side that faces it, not at q. Over a width that is drawn evenly, an edge is on average πr/4 before the axis, so that
     /// the mean place where light enters is πr/4 (l − v) from the mean place that is seen. Nor do the two rays share all of their way if light and viewer are in one
     /// direction: [`shared_over_width`].
-    pub fn over_width_of_seen(&self, psi_light: f64, psi_view: f64, q: DVec2) -> f64 {
-        let apart = DVec2::from_angle(psi_light) - DVec2::from_angle(psi_view);
-        let entry = q + 0.25 * PI * f64::from(self.fiber_radius) * apart;
-        let (light, view) = (self.at(psi_light, entry), self.at(psi_view, q));
-        let angle = 2.0 * (0.5 * apart.length()).min(1.0).asin();
-        light - in_common(self.unit_in_common(q), angle, shared_over_width(light.min(view)))
+    pub fn over_width_of_seen(&self, from: SeenFrom, q: DVec2) -> f64 {
+        let [l, v] = from.across.map(DVec2::from_angle);
+        let entry = q + 0.25 * PI * f64::from(self.fiber_radius) * (l - v);
+        let (light, view) = (self.at(from.ways[0], entry), self.at(from.ways[1], q));
+        light - in_common(self.unit_in_common(q), from.angle(), shared_over_width(light.min(view)))
     }
 
     /// Share of the sky that is open to a point that a viewer sees, above the mean over points there, seen or not; `sky_of_seen` in shaders.
@@ -390,7 +412,7 @@ mod tests {
             let yarn = without_flyaways(&Yarn::preset(name).expect(name));
             let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
             let found = over_width(&yarn, &WIDTH_DEG, 6000, |s| {
-                (-table.over_width_of_seen(s.psi_light, s.psi_view, s.q)).exp()
+                (-table.over_width_of_seen(SeenFrom::in_section(s.psi_light, s.psi_view), s.q)).exp()
             });
             for (angle, expected, predicted) in found {
                 println!(
@@ -400,7 +422,7 @@ mod tests {
             }
             // What is right for the point that is seen is rejected.
             let point = over_width(&yarn, &WIDTH_DEG, 6000, |s| {
-                (-table.toward_light_of_seen(s.psi_light, s.psi_view, s.q)).exp()
+                (-table.toward_light_of_seen(SeenFrom::in_section(s.psi_light, s.psi_view), s.q)).exp()
             });
             worst_point = point.iter().map(|(_, e, p)| (e - p).abs()).fold(worst_point, f64::max);
         }
@@ -419,7 +441,9 @@ mod tests {
         for name in PRESET_NAMES {
             let yarn = without_flyaways(&Yarn::preset(name).expect(name));
             let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
-            let found = seen(&yarn, |s| (-table.toward_light_of_seen(s.psi_light, s.psi_view, s.q)).exp());
+            let found = seen(&yarn, |s| {
+                (-table.toward_light_of_seen(SeenFrom::in_section(s.psi_light, s.psi_view), s.q)).exp()
+            });
             for (angle, expected, predicted) in found {
                 println!(
                     "{name}, light {angle}° from the viewer: {expected:.3} of the light, {predicted:.3} predicted"
