@@ -117,7 +117,10 @@ fn core_surface_at(yarn: Yarn, texel: u32) -> CoreSurface {
     return CoreSurface(2.0 * values.x, values.y);
 }
 
-// d(h, v) / d theta of the visible fiber.
-fn core_slopes_at(yarn: Yarn, texel: u32) -> vec2f {
-    return yarn.core_slope * unpack2x16snorm(table_word(yarn.core_table + 2u * texel + 1u));
+// d(h, v) / d theta of the visible fiber, which turns on with the bundle from the row's middle: a row is wider than a narrow highlight.
+fn core_slopes_at(yarn: Yarn, texel: u32, turns: f32) -> vec2f {
+    let slopes = yarn.core_slope * unpack2x16snorm(table_word(yarn.core_table + 2u * texel + 1u));
+    let rows_per_turn = f32(yarn.core_length) / f32(yarn.core_turns);
+    let turned = circle((fract(turns * rows_per_turn) - 0.5) / rows_per_turn);
+    return vec2f(slopes.x * turned.x - slopes.y * turned.y, slopes.x * turned.y + slopes.y * turned.x);
 }

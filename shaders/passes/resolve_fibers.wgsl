@@ -43,19 +43,19 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
     let across = (to_pixel_center.x * on_screen.y - to_pixel_center.y * on_screen.x) / speed;
     let offset = within_fiber(across / radius_pixels, radius_pixels);
     let center = f.position + f.velocity * rest;
-    let tangent = normalize(f.velocity);
     let view = direction_to_viewer(frame.viewer, center);
+    // Where the view ray meets the fiber's surface: nearer to the viewer than its centre line, and if that leans, beside a point of it farther along.
+    let radius = yarn.fiber_radius * p.radius * min(width, 1.0);
+    let lean = normalize(f.velocity);
+    let nearer = radius * sqrt(max(1.0 - offset * offset, 0.0)) * min(1.0 / max(length(cross(lean, view)), 1e-6), MOST_LEAN);
+    let tangent = normalize(f.velocity + f.acceleration * (nearer * dot(lean, view) / max(length(f.velocity), 1e-20)));
     // Render-space direction that the offset grows in: (y, -x) of the fiber's direction on the screen.
     let side = cross(tangent, view);
     let side_on_screen = frame.pixel_from_render * vec4f(side, 0.0);
     let grows = dot(side_on_screen.xy - at.xy * side_on_screen.z, vec2f(on_screen.y, -on_screen.x)) >= 0.0;
     let normal = fiber_normal(tangent, side * select(-1.0, 1.0, grows), view, offset);
-    // Where the view ray meets the fiber's surface.
-    let radius = yarn.fiber_radius * p.radius * min(width, 1.0);
-    let x = offset;
-    let sine = length(side);
-    let outward = side * (select(-1.0, 1.0, grows) * x / max(sine, 1e-6));
-    let position = center + radius * (outward + view * (sqrt(1.0 - x * x) * min(1.0 / max(sine, 1e-6), MOST_LEAN)));
+    let outward = side * (select(-1.0, 1.0, grows) * offset / max(length(side), 1e-6));
+    let position = center + radius * outward + view * nearer;
     let winding = q.angle_rate * p.radius / max(dot(p.velocity, p.tangent), 1e-20);
     return Surface(Tube(p.position, p.radius, p.tangent), q.radial, q.tangential, winding, position, tangent, normal, parts.segment, t);
 }

@@ -127,12 +127,8 @@ fn every_step_of_the_zoom_is_smooth() {
 #[test]
 fn a_level_of_detail_that_leaps_or_loses_fibers_is_noticed() {
     assert!(complaints(0, 0.009, -0.019).is_empty());
-    let Some(yarns) = glove() else { return };
-    let zoom = Zoom { yarns };
-    // All of the zoom at once: no level of detail alone is off by as much.
-    let [far, near] = [0, STEPS - STRIDE].map(|k| measure::brightness(&zoom.at(k, 1.0, 4)));
-    let step = near / far - 1.0;
-    assert_eq!(complaints(0, step, 0.0).len(), 1, "{step}");
+    assert_eq!(complaints(0, 0.011, 0.0).len(), 1);
+    assert_eq!(complaints(0, -0.011, 0.0).len(), 1);
     assert_eq!(complaints(0, 0.0, -0.03).len(), 1);
 }
 

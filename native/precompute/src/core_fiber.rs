@@ -138,8 +138,9 @@ struct Footprint {
     leaning: f64,
     bulge_nearer: f64,
     bulge: f64,
-    /// Its rate along the yarn.
+    /// Its rate along the yarn where the ray meets its centre line, and how much that changes to where it is beside the surface in the middle of its width.
     rate: DVec2,
+    rate_change: DVec2,
 }
 
 /// A fiber that leans towards the viewer bulges along the ray at most this much more; MOST_LEAN of `shaders/math/view.wgsl`.
@@ -223,7 +224,11 @@ impl<'a> View<'a> {
         let along_per_across = slope / (slope * slope + 1.0) / (shortened * cos);
         let leaning = along_per_across * cos * (at.rate.x * cos + sin);
         let direction = at.rate.extend(1.0).normalize();
-        let lean = 1.0 / (1.0 - (direction.x * cos + direction.z * sin).powi(2)).max(1e-12).sqrt();
+        let leaning_cos = direction.x * cos + direction.z * sin;
+        let lean = (1.0 / (1.0 - leaning_cos.powi(2)).max(1e-12).sqrt()).min(MOST_LEAN);
+        // A surface point that is nearer to the viewer than the centre line lies beside a place of it farther along.
+        let farther = radius * lean * leaning_cos * direction.z;
+        let rate_change = self.point(fiber, u, toward * self.slant + farther).rate - at.rate;
         let half_span = radius * slope.hypot(1.0);
         Footprint {
             rank: rank as u16,
@@ -231,19 +236,20 @@ impl<'a> View<'a> {
             across: (at.position - center).y,
             half_span,
             leaning: leaning * half_span,
-            bulge_nearer: cos * radius * lean.min(MOST_LEAN),
+            bulge_nearer: cos * radius * lean,
             bulge: radius,
             rate: at.rate,
+            rate_change,
         }
     }
 
     /// dh/dθ and dv/dθ that make the fiber go where it does, when to them the turning of the ply is added at the fiber's place.
     fn slopes(&self, at: &Footprint, height: f64, v: f64, offset: f64) -> DVec2 {
         // As `shaders/passes/resolve_cores.wgsl` has it.
-        let bulge = at.bulge * (1.0 - offset * offset).max(0.0).sqrt();
+        let rise = (1.0 - offset * offset).max(0.0).sqrt();
         let skewed = |h: f64, v: f64| DVec2::new(h * self.depth + v * self.skew, v * self.half_width);
-        let axis = skewed(height - bulge / self.depth, v - offset * at.bulge / self.half_width);
-        let wound = (at.rate - (self.center() + axis).perp() * self.ply_rate) / self.fiber_rate;
+        let axis = skewed(height - at.bulge * rise / self.depth, v - offset * at.bulge / self.half_width);
+        let wound = (at.rate + at.rate_change * rise - (self.center() + axis).perp() * self.ply_rate) / self.fiber_rate;
         let across = wound.y / self.half_width;
         DVec2::new((wound.x - across * self.skew) / self.depth, across)
     }
@@ -422,7 +428,9 @@ mod tests {
                         let bulge = left.sqrt();
                         let before = toward_viewer.x * (way - bulge * lean.min(MOST_LEAN)) + bulge;
                         let height = (before - v * view.skew) / view.depth;
-                        let rate = view.point(fiber, u, (f64::from(k) + share) * step).rate;
+                        let along = (b - a).normalize();
+                        let farther = bulge * lean.min(MOST_LEAN) * along.dot(toward_viewer) * along.z;
+                        let rate = view.point(fiber, u, (f64::from(k) + share) * step + farther).rate;
                         nearest = (way, Some(Met { rank, height, rate }));
                     }
                 }
