@@ -299,8 +299,8 @@ fn judge(deviations: &[f64]) -> [f64; 2] {
     [squares, deviations.iter().sum::<f64>().abs() / (deviations.len() as f64).sqrt()]
 }
 
-/// What chance exceeds once in a thousand comparisons: χ² of twelve blocks, and one normal number.
-const BOUNDS: [f64; 2] = [32.9, 3.29];
+/// What chance exceeds once in a thousand comparisons: χ² of thirteen blocks, and one normal number.
+const BOUNDS: [f64; 2] = [34.5, 3.29];
 
 #[test]
 fn hair_is_as_bright_as_mitsubas() {
@@ -309,7 +309,7 @@ fn hair_is_as_bright_as_mitsubas() {
         let deviations = fixture.deviations(name, &fixture.draw(HAIR, bounces, rounds));
         let found = judge(&deviations);
         println!("{name}: {} blocks, squares {:.2}, all {:.2}", deviations.len(), found[0], found[1]);
-        assert_eq!(deviations.len(), 12);
+        assert_eq!(deviations.len(), 13);
         assert!(found[0] < BOUNDS[0] && found[1] < BOUNDS[1], "{name}: {found:?}");
     }
 }
