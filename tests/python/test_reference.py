@@ -367,7 +367,8 @@ def test_a_lens_blurs_the_same(scene, renderer):
 @pytest.mark.parametrize("name", ["cotton-2", "rayon-4"])
 def test_light_along_a_yarn_meets_its_twist(renderer, name):
     """Such light goes across fibers that are wound towards it, along those that are wound away: of two suns that are
-    mirrored, one reaches more of a yarn. Straight yarns of one or the other twist, every fiber drawn, light scattered once."""
+    mirrored, one reaches more of a yarn. Straight yarns of one or the other twist, every fiber drawn, scattered once.
+    """
     x = np.linspace(-24, 24, 49)
     points = np.concatenate([np.column_stack([x, 0 * x, 0 * x + 4.0 * row]) for row in range(-4, 5)])
     yarns = lisle.Yarns(points, np.arange(10) * len(x), yarn_radius=1.0)
