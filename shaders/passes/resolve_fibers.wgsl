@@ -44,11 +44,15 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
     let offset = within_fiber(across / radius_pixels, radius_pixels);
     let center = f.position + f.velocity * rest;
     let view = direction_to_viewer(frame.viewer, center);
-    // Where the view ray meets the fiber's surface: nearer to the viewer than its centre line, and if that leans, beside a point of it farther along.
+    // Where the view ray meets the fiber's surface: nearer to the viewer than its centre line, and if that leans, beside a place of it farther along. No farther than
+    // its radius: what points at the viewer may have bent away by then, and so have loops and hairs.
     let radius = yarn.fiber_radius * p.radius * min(width, 1.0);
-    let lean = normalize(f.velocity);
-    let nearer = radius * sqrt(max(1.0 - offset * offset, 0.0)) * min(1.0 / max(length(cross(lean, view)), 1e-6), MOST_LEAN);
-    let tangent = normalize(f.velocity + f.acceleration * (nearer * dot(lean, view) / max(length(f.velocity), 1e-20)));
+    let straight = normalize(f.velocity);
+    let sine = max(length(cross(straight, view)), 1e-6);
+    let rise = radius * sqrt(max(1.0 - offset * offset, 0.0));
+    let nearer = rise * min(1.0 / sine, MOST_LEAN);
+    let farther = select(rise * clamp(dot(straight, view) / sine, -1.0, 1.0), 0.0, rank < yarn.flyaway_fibers);
+    let tangent = normalize(f.velocity + f.acceleration * (farther / max(length(f.velocity), 1e-20)));
     // Render-space direction that the offset grows in: (y, -x) of the fiber's direction on the screen.
     let side = cross(tangent, view);
     let side_on_screen = frame.pixel_from_render * vec4f(side, 0.0);

@@ -120,6 +120,8 @@ struct Chord {
     a: Point,
     b: Point,
     fiber: u64,
+    /// Whether it is of a fiber that may fly away.
+    flyaway: bool,
 }
 
 /// How wide a hair is drawn: it thins out towards its tip, as the ply's fiber does where the hair has left. This is the renderer's own
@@ -249,7 +251,7 @@ fn chords(object: &Object, number: u64, Chain { steps, at_breaks, .. }: Chain) -
                         piece: (piece, period),
                     };
                     if let Some(a) = previous.filter(|a| joined(a.piece, point.piece)) {
-                        own.push(Chord { a, b: point, fiber: id });
+                        own.push(Chord { a, b: point, fiber: id, flyaway: index < yarn.flyaway_fibers() });
                     }
                     previous = Some(point);
                 }
@@ -345,7 +347,6 @@ fn draw(
             let to_viewer = view.to_viewer(position);
             let sin_view = tangent.cross(to_viewer).length().max(1e-6);
             let across = tangent.cross(to_viewer) / sin_view;
-            let forward = across.cross(tangent);
             // The side on which the pixel lies, by moving the point a little.
             let moved = view.pixel(position + across * (1e-4 * chord.a.radius.max(1e-9))) - view.pixel(position);
             let x = (distance / radius).min(1.0) * away.dot(moved).signum();
@@ -353,6 +354,13 @@ fn draw(
             let surface = chord.a.radius + (chord.b.radius - chord.a.radius) * share;
             // A ray meets a tube that leans towards it earlier.
             let depth = view.depth(position) - up * surface / sin_view.max(0.2);
+            // What it meets there lies beside a place of the fiber farther along: each direction is that of its own place.
+            let farther = up * surface * (tangent.dot(to_viewer) / sin_view).clamp(-1.0, 1.0);
+            let beyond = farther / chord.a.position.distance(chord.b.position).max(1e-20);
+            let beyond = if chord.flyaway { 0.0 } else { beyond };
+            let tangent = chord.a.tangent.lerp(chord.b.tangent, share + beyond).normalize();
+            let across = tangent.cross(to_viewer).normalize_or(across);
+            let forward = across.cross(tangent);
             if (distance - radius).abs() < EDGE {
                 pixel.edge = pixel.edge.min(depth);
             }
