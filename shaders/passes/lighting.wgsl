@@ -61,7 +61,8 @@ fn direction_across(section: SectionPoint, slope: vec2f, direction: vec3f) -> Se
 }
 
 // Direction of a ray's way out of the yarn in a section that turns with the plies. There the way is bent; what lies near decides, so that it goes as a quarter of the way
-// to the yarn's border: beside the reference, light along the yarn was 5 to 9 % off with none of this, 2 to 6 % with the direction at the point, 1 to 4 % so, and 3 to 9 % half way.
+// to the yarn's border: beside the reference, light from the front and along the yarn was 5 to 9 % off with none of this, 2 to 6 % with the direction at the point, 1 to 4 % so, and 3 to 9 %
+// half way. Light from behind comes through all of the yarn, where that is no help: 10 to 12 % off with none of it, 11 to 14 % so.
 fn direction_out(section: SectionPoint, direction: vec3f) -> vec2f {
     let l = section_direction(section, direction).unit;
     let q = section.position;
