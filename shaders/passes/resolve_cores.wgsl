@@ -30,7 +30,7 @@ fn core_surface(s: Segment, yarn: Yarn, ply: u32, parts: KeyParts, pixel: vec2u)
     let b = core_end(core_point(yarn, s, yarn_point(s, t1), ply, frame.viewer));
     let hit = core_hit(a, b, vec2f(pixel) + 0.5);
     let t = mix(t0, t1, hit.t);
-    let texel = core_shown(yarn, hit, mix_detail(scale.ends, t).fibers, core_chance(pixel)).texel;
+    let texel = core_shown(yarn, hit, share_at(scale, t), core_chance(pixel)).texel;
     let surface = core_surface_at(yarn, texel);
     let slopes = core_slopes_at(yarn, texel, hit.turns);
     // The step may be a long chord: what is shaded lies where the curve is.

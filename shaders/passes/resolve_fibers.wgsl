@@ -27,7 +27,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
     let fiber = fiber_at(yarn, ply_seed(s.seed, ply), rank);
     let f = fiber_point(yarn, s, p, q, fiber);
     let scale = scale_of(yarn, s);
-    let width = width_factor(yarn, mix_detail(scale.ends, t), rank, f.flyaway, f.taper);
+    let width = width_factor(yarn, share_at(scale, t), rank, f.taper);
     let radius_pixels = max(pixels_at(f.position, yarn.fiber_radius * p.radius * width), 1e-20);
     var beside = vec3f(0.0);
     if is_thin(radius_pixels) {
@@ -46,7 +46,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
     let view = direction_to_viewer(frame.viewer, center);
     // Where the view ray meets the fiber's surface: nearer to the viewer than its centre line, and if that leans, beside a place of it farther along. No farther than
     // its radius: what points at the viewer may have bent away by then, and so have loops and hairs.
-    let radius = yarn.fiber_radius * p.radius * min(width, 1.0);
+    let radius = yarn.fiber_radius * p.radius * width;
     let straight = normalize(f.velocity);
     let sine = max(length(cross(straight, view)), 1e-6);
     let rise = radius * sqrt(max(1.0 - offset * offset, 0.0));

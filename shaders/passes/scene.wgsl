@@ -97,14 +97,14 @@ fn pixels_at(position: vec3f, radius: f32) -> f32 {
 // A segment's size and level of detail on the screen, at its two ends.
 struct Scale {
     radius_pixels: f32,
-    ends: array<Detail, 2>,
+    // Of the fibers drawn one by one.
+    shares: vec2f,
 }
 
 fn scale_between(yarn: Yarn, start: vec3f, start_radius: f32, end: vec3f, end_radius: f32) -> Scale {
     let a = pixels_at(start, start_radius);
     let b = pixels_at(end, end_radius);
-    let ends = array<Detail, 2>(detail_at(yarn, a, frame.lod_pixels), detail_at(yarn, b, frame.lod_pixels));
-    return Scale(max(a, b), ends);
+    return Scale(max(a, b), vec2f(fiber_share(yarn, a, frame.lod_pixels), fiber_share(yarn, b, frame.lod_pixels)));
 }
 
 fn scale_of(yarn: Yarn, s: Segment) -> Scale {
@@ -112,9 +112,9 @@ fn scale_of(yarn: Yarn, s: Segment) -> Scale {
 }
 
 fn most_fibers(yarn: Yarn, scale: Scale) -> u32 {
-    return max(fiber_count(yarn, scale.ends[0]), fiber_count(yarn, scale.ends[1]));
+    return fiber_count(yarn, max(scale.shares.x, scale.shares.y));
 }
 
-fn mix_detail(ends: array<Detail, 2>, t: f32) -> Detail {
-    return Detail(mix(ends[0].fibers, ends[1].fibers, t), mix(ends[0].flyaways, ends[1].flyaways, t));
+fn share_at(scale: Scale, t: f32) -> f32 {
+    return mix(scale.shares.x, scale.shares.y, t);
 }

@@ -11,7 +11,7 @@ fn table_value(index: u32) -> f32 {
 
 // A row of the fiber table: FiberTable::packed of native/core/src/yarn/table.rs.
 fn fiber_at(yarn: Yarn, ply: PlySeed, rank: u32) -> Fiber {
-    let place = table_word(yarn.fiber_table + 2u * rank);
+    let radius = table_word(yarn.fiber_table + 2u * rank);
     let turns = table_word(yarn.fiber_table + 2u * rank + 1u);
-    return make_fiber(ply, rank, 0x1p-16 * vec3f(vec3u(place, turns, turns >> 16u) & vec3u(0xffffu)), place >> 16u);
+    return make_fiber(ply, rank, 0x1p-16 * vec3f(vec3u(radius, turns, turns >> 16u) & vec3u(0xffffu)));
 }

@@ -1,7 +1,7 @@
 // How it works: one thread draws the core fibers of one segment. A pixel takes the height of its texel, or nothing in a hole.
 // Loops are as in visibility_fibers.wgsl.
 
-fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
+fn draw_core(yarn: Yarn, parts: Parts, scale: Scale, t0: f32, t1: f32, a: CoreEnd, b: CoreEnd, segment: u32, slot: u32, step: u32) {
     let orthographic = frame.viewer.w > 0.5;
     let line = make_line(
         LineEnd(a.position, a.depth, a.half_width * core_half_width(yarn, a.aspect)),
@@ -19,8 +19,8 @@ fn draw_core(yarn: Yarn, parts: Parts, ends: array<Detail, 2>, t0: f32, t1: f32,
         let pixel = vec2i(place.span.x, place.i);
         let hit = core_hit(a, b, vec2f(pixel) + 0.5);
         if quad_is_on_pixel(walk, place) && hit.covered && abs(hit.v) <= core_half_width(yarn, hit.aspect) {
-            let detail = mix_detail(ends, mix(t0, t1, hit.t));
-            let height = core_shown(yarn, hit, detail.fibers, core_chance(vec2u(pixel))).height;
+            let share = share_at(scale, mix(t0, t1, hit.t));
+            let height = core_shown(yarn, hit, share, core_chance(vec2u(pixel))).height;
             var key = Key(0u, 0u);
             if height > CORE_HOLE {
                 let nearer = height * mix(a.depth_h, b.depth_h, hit.t) + hit.v * mix(a.depth_v, b.depth_v, hit.t);
@@ -54,7 +54,7 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
     let yarn = yarns[draws[draw].yarn];
     let s = segment_at(draw, segment);
     let scale = scale_of(yarn, s);
-    if min(scale.ends[0].fibers, scale.ends[1].fibers) >= 1.0 {
+    if min(scale.shares.x, scale.shares.y) >= 1.0 {
         return;
     }
     let steps = core_steps(yarn, s, scale.radius_pixels);
@@ -67,7 +67,7 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
             let next = core_end(core_point(yarn, s, yarn_point(s, t), ply, frame.viewer));
             if min(previous.depth, next.depth) > frame.near {
                 let t0 = f32(step - 1u) / f32(steps);
-                draw_core(yarn, Parts(frame.core_parts, workgroup.z), scale.ends, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
+                draw_core(yarn, Parts(frame.core_parts, workgroup.z), scale, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
             }
             previous = next;
             step++;

@@ -67,9 +67,8 @@ fn draw_between(a: FiberEnd, b: FiberEnd, begin: f32, to: f32, owner: Key, parts
     let orthographic = frame.viewer.w > 0.5;
     let line = make_line(a.line, b.line, orthographic);
     let chord = b.line.depth - a.line.depth;
-    // Of its own width, the fiber is round: where it stands for several, it is flatter.
     let lean = line_lean(line, orthographic);
-    let thickness = lean / (max(a.width, 1.0) * frame.pixels_per_unit);
+    let thickness = lean / frame.pixels_per_unit;
     let stroke = Stroke(
         owner,
         begin * place_scale() + 0.5,
@@ -135,12 +134,12 @@ struct Bundle {
 fn draw_regular(b: Bundle, ply: u32, first: u32, last: u32, parts: Parts) {
     let seed = ply_seed(b.segment.seed, ply);
     let first_slot = ply * (b.yarn.fibers + 1u) + 1u;
-    var start = screen_ply(b.yarn, b.segment, b.scale.ends, 0.0, ply);
+    var start = screen_ply(b.yarn, b.segment, b.scale, 0.0, ply);
     var step = 1u;
     loop {
         let t0 = f32(step - 1u) / f32(b.steps);
         let t1 = f32(step) / f32(b.steps);
-        let end = screen_ply(b.yarn, b.segment, b.scale.ends, t1, ply);
+        let end = screen_ply(b.yarn, b.segment, b.scale, t1, ply);
         var rank = first;
         loop {
             // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
@@ -186,37 +185,14 @@ fn flyaway_at(b: Bundle, group: Flyaways, number: u32) -> Fiber {
     return fiber_at(b.yarn, ply_seed(b.segment.seed, flyaway_ply(group, number)), rank);
 }
 
-// Whether a fiber shows anything along the segment: far away those that stay in their ply are left to its core.
-fn is_shown(b: Bundle, fiber: Fiber) -> bool {
-    let most_inside = max(b.scale.ends[0].fibers, b.scale.ends[1].fibers) * f32(b.yarn.fibers);
-    return f32(fiber.rank) < most_inside || is_astray_along(b.yarn, b.segment, fiber);
-}
-
-// A bit for each that shows anything. What follows is dear, and threads that run abreast wait for the one with most of it.
-fn flyaways_shown(b: Bundle, group: Flyaways, all: u32) -> u32 {
-    var shown = 0u;
-    var number = 0u;
-    loop {
-        if number < all && is_shown(b, flyaway_at(b, group, number)) {
-            shown |= 1u << number;
-        }
-        number++;
-        if number >= all {
-            break;
-        }
-    }
-    return shown;
-}
-
 // One loop over all lines of all of them, since threads that run abreast wait for the one with most lines.
 fn draw_flyaways(b: Bundle, group: Flyaways, parts: Parts) {
     let plies = (b.yarn.plies - group.first_ply + group.plies - 1u) / group.plies;
-    var shown = flyaways_shown(b, group, plies * group.count);
+    let all = plies * group.count;
+    var number = 0u;
     var step = 1u;
     var begin = 0.0;
     loop {
-        // Without any left, the first, and nothing comes of it.
-        let number = countTrailingZeros(shown) & 31u;
         let ply = flyaway_ply(group, number);
         let fiber = flyaway_at(b, group, number);
         let ends = vec2f(f32(step - 1u), f32(step)) / f32(b.steps);
@@ -224,25 +200,25 @@ fn draw_flyaways(b: Bundle, group: Flyaways, parts: Parts) {
         let line = line_from(b.segment, fiber, lines, begin);
         let from_end = flyaway_end(b, ply, fiber, lines, begin);
         let to_end = flyaway_end(b, ply, fiber, lines, line.end);
-        if shown != 0u && is_in_view(from_end, to_end) && joined(from_end.piece, from_end.period, to_end.piece, to_end.period) {
+        if is_in_view(from_end, to_end) && joined(from_end.piece, from_end.period, to_end.piece, to_end.period) {
             let slot = ply * (b.yarn.fibers + 1u) + 1u + fiber.rank;
             draw_between(from_end, to_end, begin, line.end, key_owner(b.number, slot), parts);
         }
         begin = line.next;
         step += select(0u, 1u, begin >= ends.y);
         if step > b.steps {
-            shown &= shown - 1u;
+            number++;
             step = 1u;
             begin = 0.0;
         }
-        if shown == 0u {
+        if number >= all {
             break;
         }
     }
 }
 
 fn flyaway_end(b: Bundle, ply: u32, fiber: Fiber, lines: StepLines, t: f32) -> FiberEnd {
-    let at = screen_ply(b.yarn, b.segment, b.scale.ends, t, ply);
+    let at = screen_ply(b.yarn, b.segment, b.scale, t, ply);
     return fiber_end(b.yarn, at, fiber, section_in(b.yarn, b.segment, at.yarn, fiber, period_on(b.segment, fiber, lines, at.yarn.length)));
 }
 

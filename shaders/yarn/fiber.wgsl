@@ -33,7 +33,7 @@ fn ply_point(yarn: Yarn, s: Segment, p: YarnPoint, ply: u32) -> PlyPoint {
 
 // A row of the fiber table with what the ply adds to it.
 struct Fiber {
-    // In the order in which levels of detail draw them.
+    // From the outermost on: levels of detail draw the first of them.
     rank: u32,
     radius: f32,
     angle_turns: f32,
@@ -57,8 +57,8 @@ fn ply_seed(seed: u32, ply: u32) -> PlySeed {
     );
 }
 
-fn make_fiber(ply: PlySeed, rank: u32, row: vec3f, number: u32) -> Fiber {
-    return Fiber(rank, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, number));
+fn make_fiber(ply: PlySeed, rank: u32, row: vec3f) -> Fiber {
+    return Fiber(rank, row.x, row.y + ply.angle_turns, row.z + ply.migration_turns, hash_combine(ply.hash, rank));
 }
 
 // The parts of a hair's period: a line never joins the tip to what lies beyond it.
@@ -72,19 +72,9 @@ struct Profile {
     radius_acceleration: f32,
     angle_turns: f32,
     angle_rate: f32,
-    // How far a loop or a hair is astray, 0 to 1.
-    flyaway: f32,
     // Factor on the width: a hair thins out at its tip, and so does the end left in the ply.
     taper: f32,
     piece: u32,
-}
-
-// Relative radii between which a loop or a hair leaves its ply.
-const ASTRAY_BEGIN: f32 = 0.9;
-const ASTRAY_END: f32 = 1.1;
-
-fn astray(radius: f32) -> f32 {
-    return smoothstep(ASTRAY_BEGIN, ASTRAY_END, radius);
 }
 
 // What a fiber is in one migration period.
@@ -141,10 +131,9 @@ fn fiber_profile(yarn: Yarn, fiber: Fiber, period: Period, phase: f32) -> Profil
     let wave = 0.5 - 0.5 * unit.x;
     let inner = fiber.radius * yarn.r_min;
     var outer = fiber.radius;
-    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
+    var profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, PIECE_PLY);
     if period.kind == PERIOD_LOOP {
         outer = period.outer;
-        profile.flyaway = astray(inner + (outer - inner) * wave);
     } else if period.kind == PERIOD_HAIR {
         let along = (phase - 0.5) * period.direction / period.width;
         if along >= 0.0 && along <= 1.0 {
@@ -156,7 +145,6 @@ fn fiber_profile(yarn: Yarn, fiber: Fiber, period: Period, phase: f32) -> Profil
                 2.0 * period.rise * along_rate * along_rate,
                 period.turned * along * along,
                 2.0 * along * period.turned * along_rate,
-                astray(radius),
                 1.0 - along * along * along * along,
                 PIECE_HAIR,
             );
@@ -239,29 +227,6 @@ fn fiber_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSec
     return section_in(yarn, s, p, fiber, period_at(yarn, s, fiber, floor(migration(s, fiber, p.length))));
 }
 
-// Whether a period has a loop or a hair astray between two places of the fiber's migration.
-fn is_astray_in(yarn: Yarn, fiber: Fiber, at: PeriodAt, from_migrated: f32, to_migrated: f32) -> bool {
-    let low = max(from_migrated - at.whole, 0.0);
-    let high = min(to_migrated - at.whole, 1.0);
-    if at.period.kind == PERIOD_LOOP {
-        // It is widest in the middle of its period.
-        let inner = fiber.radius * yarn.r_min;
-        let nearest = clamp(0.5, low, high);
-        return inner + (at.period.outer - inner) * (0.5 - 0.5 * circle(nearest).x) > ASTRAY_BEGIN;
-    }
-    let tip = 0.5 + at.period.direction * at.period.width;
-    return at.period.kind == PERIOD_HAIR && low < max(0.5, tip) && high > min(0.5, tip) && at.period.outer > ASTRAY_BEGIN;
-}
-
-// Whether a fiber leaves its ply along the segment. Of more than two periods, it is taken to.
-fn is_astray_along(yarn: Yarn, s: Segment, fiber: Fiber) -> bool {
-    let a = migration(s, fiber, 0.0);
-    let b = migration(s, fiber, scalar_value(s.length, 1.0));
-    let first = period_at(yarn, s, fiber, floor(a));
-    let second = period_at(yarn, s, fiber, floor(b));
-    return second.whole - first.whole > 1.0 || is_astray_in(yarn, fiber, first, a, b) || is_astray_in(yarn, fiber, second, a, b);
-}
-
 // Of a fiber that never flies away: the same, and much less to do.
 fn regular_section(yarn: Yarn, s: Segment, p: YarnPoint, fiber: Fiber) -> FiberSection {
     let phase = fract(migration(s, fiber, p.length));
@@ -273,7 +238,6 @@ struct FiberPoint {
     velocity: vec3f,
     // How the curve bends, near enough to tell it from its chords.
     acceleration: vec3f,
-    flyaway: f32,
     taper: f32,
 }
 
@@ -297,7 +261,6 @@ fn fiber_point(yarn: Yarn, s: Segment, p: YarnPoint, q: PlyPoint, fiber: Fiber) 
     f.acceleration = q.acceleration + p.radius * (spoke_acceleration * shape.radius
         + 2.0 * spoke_rate * (shape.radius_rate * at.phase_rate)
         + spoke * (shape.radius_acceleration * at.phase_rate * at.phase_rate));
-    f.flyaway = shape.flyaway;
     f.taper = shape.taper;
     return f;
 }

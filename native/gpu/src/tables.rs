@@ -58,7 +58,7 @@ impl YarnTables {
     pub fn new(yarn: &Yarn, tables: &Tables) -> Self {
         let mut words = Words::default();
         let fibers = FiberTable::new(yarn);
-        let rows = FiberTable::drawing_order(yarn).into_iter().flat_map(|fiber| fibers.packed(fiber));
+        let rows = (0..fibers.radius.len()).flat_map(|fiber| fibers.packed(fiber));
         let fiber_table = words.append_words(rows);
         let core = &tables.core_fiber;
         let core_slope = core.texels.iter().flat_map(|t| [t[2].abs(), t[3].abs()]).fold(f32::MIN_POSITIVE, f32::max);

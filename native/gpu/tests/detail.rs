@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 use lisle_core::scattering::Material;
-use lisle_core::yarn::PRESET_NAMES;
+use lisle_core::yarn::{PRESET_NAMES, Yarn};
 use lisle_core::{Curves, Yarns};
 use lisle_gpu::{Camera, Image, Light, Scene, Settings};
 use support::{
@@ -198,8 +198,8 @@ fn the_colours_of_a_ply_under_a_little_more_light_are_told_apart() {
     assert!(error > GOALS[1].1 && error < 0.1, "{error}");
 }
 
-/// Straight yarns of all their plies, one after the other on one line, without flyaways: five of them, since each shows its fibers at angles of its own.
-fn plies(name: &str, material: &str, lod_pixels: f32, radius_pixels: u32, samples: u32) -> Image {
+/// Straight yarns of all their plies, one after the other on one line: five of them, since each shows its fibers at angles of its own.
+fn plies(yarn: &Yarn, material: &str, lod_pixels: f32, radius_pixels: u32, samples: u32) -> Image {
     const YARNS: u32 = 5;
     const LENGTH: f64 = 80.0;
     let size = [radius_pixels * YARNS * (LENGTH as u32 + 2), 3 * radius_pixels];
@@ -210,13 +210,17 @@ fn plies(name: &str, material: &str, lod_pixels: f32, radius_pixels: u32, sample
     };
     let curves = Curves::catmull_rom((0..YARNS).map(piece).collect(), false);
     let yarns = Arc::new(Yarns::new(curves, Some(1.0)).expect("valid"));
-    let mut object = object(&yarns, &support::without_flyaways(preset(name)));
+    let mut object = object(&yarns, yarn);
     object.material = Arc::new(Material { diffuse_weight: 0.0, ..Material::preset(material).expect("preset") });
     let camera = orthographic(looking(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO), 3.0, size, [0.0, 0.0]);
     let mut scene = scene(vec![object], camera);
     scene.ambient = glam::Vec3::ZERO;
     scene.lights = vec![sun([0.0, 1.0, -1.0], 3.0)];
     draw(&scene, &Settings { samples, filter_width: 1.5, lod_pixels, ..exact(size) })
+}
+
+fn bare(name: &str) -> Yarn {
+    support::without_flyaways(preset(name))
 }
 
 /// Mean square of how far fibers run across the yarn, where one is seen.
@@ -230,7 +234,7 @@ fn steepness(image: &Image) -> f64 {
 #[test]
 fn fibers_of_a_core_have_their_directions() {
     for name in ["cotton-1", "silk-1", "rayon-3"] {
-        let [full, merged] = [0.0, 100.0].map(|lod_pixels| steepness(&plies(name, "cotton", lod_pixels, 12, 1)));
+        let [full, merged] = [0.0, 100.0].map(|lod_pixels| steepness(&plies(&bare(name), "cotton", lod_pixels, 12, 1)));
         let error = merged / full - 1.0;
         println!("{name}: steepness {full:.5}, of the core {:+.2} %", 100.0 * error);
         assert!(error.abs() < 0.05, "{name}: {error}");
@@ -243,12 +247,39 @@ fn fibers_of_a_core_have_their_directions() {
 fn yarns_of_several_plies_keep_their_colour_among_levels_of_detail() {
     for (name, goal) in [("cotton-1", 0.03), ("cotton-2", 0.03), ("silk-1", 0.03)] {
         for material in ["cotton", "fleece"] {
-            let [full, merged] = [0.0, 1.0].map(|lod_pixels| plies(name, material, lod_pixels, 4, 64));
+            let [full, merged] = [0.0, 1.0].map(|lod_pixels| plies(&bare(name), material, lod_pixels, 4, 64));
             let error = measure::brightness(&merged) / measure::brightness(&full) - 1.0;
             println!("{name}, {material}: {:+.2} %", 100.0 * error);
             assert!(error.abs() < goal, "{name}, {material}: {error}");
         }
     }
+}
+
+/// Loops and hairs from afar, where a yarn is 2 to 16 pixels wide: none of them drawn one by one, some, and many.
+#[test]
+fn loops_and_hairs_keep_their_light_and_area_among_levels_of_detail() {
+    // More pixels each way show every fiber without the error of its chords.
+    const ZOOM: u32 = 4;
+    let mut failures = Vec::new();
+    for name in ["cotton-1", "cotton-2", "rayon-1", "silk-1"] {
+        let beside = |a: &Image, b: &Image, of: &dyn Fn(&Image) -> f64| of(a) / of(b) - 1.0;
+        for radius_pixels in [1, 3, 8] {
+            let samples = 256 / (radius_pixels * radius_pixels);
+            let full = plies(&preset(name), "fleece", 0.0, ZOOM * radius_pixels, samples.div_ceil(ZOOM * ZOOM));
+            let merged = plies(&preset(name), "fleece", 1.0, radius_pixels, samples);
+            let light = beside(&merged, &full, &measure::brightness);
+            let area = beside(&merged, &full, &|image| measure::area(image) / image.combined.len() as f64);
+            println!("{name}, {radius_pixels} px: light {:+.2} %, area {:+.2} %", 100.0 * light, 100.0 * area);
+            if light.abs() > 0.03 || area.abs() > 0.02 {
+                failures.push(format!("{name}, {radius_pixels} px: light {light:+.4}, area {area:+.4}"));
+            }
+        }
+        // The same comparison sees a yarn that has lost them.
+        let [full, lost] = [preset(name), bare(name)].map(|yarn| plies(&yarn, "fleece", 0.0, 3, 28));
+        let lost = beside(&lost, &full, &measure::area);
+        assert!(lost.abs() > 0.02, "{name}: without loops and hairs {lost:+.4}");
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
 }
 
 /// Five yarns without flyaways that wave towards the viewer, as those of a weave do, one above the other.

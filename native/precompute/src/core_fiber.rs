@@ -1,11 +1,10 @@
 use std::f64::consts::TAU;
 
 use glam::DVec2;
-use lisle_core::sampling::{hash_combine, unit_from_hash};
-use lisle_core::yarn::{FiberTable, Yarn};
+use lisle_core::yarn::{FiberTable, FiberType, Yarn};
 use rayon::prelude::*;
 
-use crate::profile::astray_share;
+use crate::arrangement::{Arrangement, TURNS};
 
 /// Height that marks a texel where no fiber is seen.
 pub const HOLE: f32 = -2.0;
@@ -13,15 +12,15 @@ pub const HOLE: f32 = -2.0;
 /// Rank of no fiber.
 pub const NO_RANK: u16 = u16::MAX;
 
-/// Turns of the bundle along the ply that a texture shows.
-pub const TURNS: usize = 4;
-
 /// Slants, views, layers, rows in all turns, texels across the ply.
 const SLANTS: usize = 5;
 const VIEWS: usize = 7;
 const LAYERS: usize = 5;
 const LENGTH: usize = 48 * TURNS;
 const WIDTH: usize = 64;
+
+/// Relative distance from the ply's centre, across and towards the viewer, beyond which loops and hairs are cut: little of them is there.
+const REACH: f64 = 1.9;
 
 /// Rows from one to the next that tell how wide a texture is.
 const WIDEST_STRIDE: usize = 8;
@@ -32,9 +31,8 @@ const SLANT_STEP: f64 = 0.85;
 /// Textures that stand for the inner fibers of a ply [WuYuksel2018 §3.2, Fig. 5].
 ///
 /// They show a ply of a straight yarn in its NORMALISED section (half axes divided out: a unit disc), seen from +h, with +v across. Row u is the turn of the
-/// bundle: fiber i lies at angle 2π(u + angle_turns_i) from +h towards +v, at radius R_i (R_min + (1 − R_min)(½ − ½ cos 2π(s u + migration_turns_i))), which is
-/// Eq. 2 with the migration rate s rounded to an odd number of periods in all turns, so that they tile. (In a single turn each fiber has one radius at each
-/// angle, and the few outermost ones decide how bright an edge is.) Sample them with the nearest texel: neighbours may be different fibers.
+/// bundle: fiber i lies at angle 2π(u + angle_turns_i) from +h towards +v, at radius R_i (R_min + (1 − R_min)(½ − ½ cos 2π(± s u + migration_turns_i))), which is
+/// Eq. 2 as [`Arrangement`] has it, or a loop or a hair. (In a single turn each fiber has one radius at each angle, and the few outermost ones decide how bright an edge is.) Sample them with the nearest texel: neighbours may be different fibers.
 ///
 /// A ray goes to the viewer from the section of its row, where it passes h = 0 of the ply at v. Seen at a slant it leaves that section: by the time that it comes to a
 /// fiber, the bundle has turned in its ply, and the ply about the yarn. How long a section cuts a fiber, and how far it bulges, hangs on where it goes there.
@@ -50,7 +48,8 @@ pub struct CoreFiber {
     pub slant_step: f32,
     /// View k is for sin ψ |sin ψ| = 2 k / (views − 1) − 1.
     pub views: usize,
-    /// Layer l shows the fibers of rank ≥ m (l / layers)² in the order of [`FiberTable::drawing_order`], the outermost first. Those astray are left out.
+    /// Layer l shows the fibers of rank ≥ m (l / layers)² in the order of [`FiberTable`], the outermost first. Loops and hairs
+    /// are among them.
     pub layers: usize,
     /// Turns after which they repeat.
     pub turns: usize,
@@ -78,25 +77,9 @@ struct Texel {
 
 const NOTHING: Texel = Texel { values: [HOLE, 0.0, 0.0, 0.0], rank: NO_RANK, nearness: f32::NEG_INFINITY };
 
-/// Which fibers of a ply the textures show: flyaways are drawn one by one while they are outside of the ply, so that only as many of
-/// the fibers that fly away are here as stay in it at a time.
-fn staying(yarn: &Yarn, table: &FiberTable) -> Vec<bool> {
-    let stays = |fiber: usize| {
-        fiber >= yarn.flyaway_fibers() as usize
-            || unit_from_hash(hash_combine(0x57a7_1c0e, fiber as u32)) >= astray_share(yarn, table.radius[fiber])
-    };
-    (0..table.radius.len()).map(stays).collect()
-}
-
 /// First of `count` fibers that a layer shows.
 fn first_rank(layer: usize, count: usize) -> usize {
     (layer * layer * count).div_ceil(LAYERS * LAYERS)
-}
-
-/// Migration periods per turn of the textures: an odd number of them in all turns, which repeats in no fewer of the four.
-fn migration_rate(yarn: &Yarn) -> f64 {
-    let odd = 2.0 * (0.5 * (yarn.migration_rate * TURNS as f64 - 1.0)).round().max(0.0) + 1.0;
-    odd / TURNS as f64
 }
 
 /// A point of a fiber in the section that it lies in, and its rate along the yarn; from the yarn's axis, the first coordinate towards the
@@ -105,6 +88,9 @@ fn migration_rate(yarn: &Yarn) -> f64 {
 struct Point {
     position: DVec2,
     rate: DVec2,
+    /// Factor on the fiber's width.
+    width: f64,
+    kind: FiberType,
 }
 
 /// A ply as one slant and view show it.
@@ -112,6 +98,7 @@ struct Point {
 struct View<'a> {
     yarn: &'a Yarn,
     table: &'a FiberTable,
+    arrangement: &'a Arrangement<'a>,
     /// ψ, radians.
     psi: f64,
     /// Tangent between the direction to the viewer and the section.
@@ -130,6 +117,7 @@ struct View<'a> {
 #[derive(Clone, Copy, Debug)]
 struct Footprint {
     rank: u16,
+    kind: FiberType,
     /// How far it is towards the viewer from the ply's centre, and across; half of what it covers across. Lengths.
     toward: f64,
     across: f64,
@@ -151,7 +139,8 @@ const LEAST_FORESHORTENING: f64 = 0.1;
 const MOST_SLOPE: f64 = 10.0;
 
 impl<'a> View<'a> {
-    fn new(yarn: &'a Yarn, table: &'a FiberTable, slant: usize, view: usize) -> Self {
+    fn new(arrangement: &'a Arrangement, slant: usize, view: usize) -> Self {
+        let (yarn, table) = (arrangement.yarn, arrangement.table);
         let signed_square = 2.0 * view as f64 / (VIEWS - 1) as f64 - 1.0;
         let psi = signed_square.abs().sqrt().asin().copysign(signed_square);
         let toward = DVec2::from_angle(psi) * Self::axes(yarn);
@@ -160,6 +149,7 @@ impl<'a> View<'a> {
         Self {
             yarn,
             table,
+            arrangement,
             psi,
             slant: SLANT_STEP * (slant as f64 - 0.5 * (SLANTS - 1) as f64),
             depth,
@@ -184,20 +174,23 @@ impl<'a> View<'a> {
     fn point(&self, fiber: usize, u: f64, along: f64) -> Point {
         let yarn = self.yarn;
         let turns = u + along / yarn.fiber_twist;
-        let migration = TAU * (migration_rate(yarn) * turns + self.table.migration_turns[fiber]);
-        let outer = self.table.radius[fiber];
-        let radius = outer * (yarn.r_min + (1.0 - yarn.r_min) * (0.5 - 0.5 * migration.cos()));
+        let shape = self.arrangement.profile(fiber, turns);
         // Slopes are those of the yarn itself.
-        let radius_rate = outer * (1.0 - yarn.r_min) * 0.5 * migration.sin() * yarn.migration_rate * self.fiber_rate;
-        let unit = DVec2::from_angle(TAU * (turns + self.table.angle_turns[fiber]) + self.psi);
-        let in_ply = Self::axes(yarn) * unit * radius;
-        let in_ply_rate = Self::axes(yarn) * (unit * radius_rate + unit.perp() * (radius * self.fiber_rate));
+        let phase_rate = yarn.migration_rate / yarn.fiber_twist.abs();
+        let radius_rate = shape.radius_rate * phase_rate;
+        let astray = yarn.fiber_twist.signum() * TAU;
+        let angle_rate = self.fiber_rate + astray * shape.angle_rate * phase_rate;
+        let angle = TAU * (turns + self.table.angle_turns[fiber]) + astray * shape.angle_turns;
+        let unit = DVec2::from_angle(angle + self.psi);
+        let in_ply = Self::axes(yarn) * unit * shape.radius;
+        let in_ply_rate = Self::axes(yarn) * (unit * radius_rate + unit.perp() * (shape.radius * angle_rate));
         let turned = DVec2::from_angle(self.short_axis + self.ply_rate * along);
         let position = turned.rotate(DVec2::new(yarn.ply_distance(), 0.0) + in_ply);
-        Point { position, rate: turned.rotate(in_ply_rate) + position.perp() * self.ply_rate }
+        let rate = turned.rotate(in_ply_rate) + position.perp() * self.ply_rate;
+        Point { position, rate, width: shape.taper, kind: shape.kind }
     }
 
-    fn footprint(&self, fiber: usize, rank: usize, u: f64) -> Footprint {
+    fn footprint(&self, fiber: usize, u: f64) -> Footprint {
         const NEWTON_STEPS: usize = 4;
         // Of a fiber's radius: nearer, a step changes nothing that is seen.
         const CLOSE: f64 = 1e-3;
@@ -212,7 +205,8 @@ impl<'a> View<'a> {
             toward += step / (1.0 - self.slant * at.rate.x).max(LEAST_FORESHORTENING);
             at = self.point(fiber, u, toward * self.slant);
         }
-        toward = (at.position - center).x;
+        let missed = (at.position - center).x - toward;
+        toward += missed;
         let shortened = (1.0 - self.slant * at.rate.x).max(LEAST_FORESHORTENING);
         // Cosine and sine between the direction to the viewer and the section.
         let cos = 1.0 / self.slant.hypot(1.0);
@@ -229,9 +223,12 @@ impl<'a> View<'a> {
         // A surface point that is nearer to the viewer than the centre line lies beside a place of it farther along.
         let farther = radius * lean * leaning_cos * direction.z;
         let rate_change = self.point(fiber, u, toward * self.slant + farther).rate - at.rate;
-        let half_span = radius * slope.hypot(1.0);
+        // A hair that ends or bends away may not be met at all.
+        let met = self.slant == 0.0 || missed.abs() < radius;
+        let half_span = if met { radius * at.width * slope.hypot(1.0) } else { 0.0 };
         Footprint {
-            rank: rank as u16,
+            rank: fiber as u16,
+            kind: at.kind,
             toward,
             across: (at.position - center).y,
             half_span,
@@ -266,8 +263,8 @@ impl<'a> View<'a> {
             let rise = (1.0 - offset * offset).max(0.0).sqrt();
             let axis = at.toward + at.leaning * offset;
             let nearness = (axis + at.bulge_nearer * rise) as f32;
-            if offset.abs() <= 1.0 && nearness > texel.nearness {
-                let height = (axis + at.bulge * rise - v * self.skew) / self.depth;
+            let height = (axis + at.bulge * rise - v * self.skew) / self.depth;
+            if offset.abs() <= 1.0 && nearness > texel.nearness && height.abs() < REACH {
                 let slopes = self.slopes(at, height, v, offset);
                 let values = [height, offset, slopes.x, slopes.y].map(|value| value as f32);
                 *texel = Texel { values, rank: at.rank, nearness };
@@ -280,25 +277,29 @@ impl CoreFiber {
     /// Draws the fibers of one ply.
     pub fn new(yarn: &Yarn, table: &FiberTable) -> Self {
         let count = table.radius.len();
-        let (staying, order) = (staying(yarn, table), FiberTable::drawing_order(yarn));
-        let view = |index: usize| View::new(yarn, table, index / VIEWS, index % VIEWS);
-        let shown: Vec<_> = (0..count).filter(|rank| staying[order[*rank]]).collect();
+        let arrangement = Arrangement::new(yarn, table);
+        let view = |index: usize| View::new(&arrangement, index / VIEWS, index % VIEWS);
         let place = |row: usize| (view(row / LENGTH), ((row % LENGTH) as f64 + 0.5) * TURNS as f64 / LENGTH as f64);
-        let widest = |slant: usize| {
+        let widest = |slant: usize, shown: fn(FiberType) -> bool| {
             // Some rows of each view tell: in all of them the same fibers come to the edge.
             let rows = (slant * VIEWS * LENGTH..(slant + 1) * VIEWS * LENGTH).into_par_iter().step_by(WIDEST_STRIDE);
             let of_row = |row: usize| {
                 let (view, u) = place(row);
-                let footprints = shown.iter().map(|rank| view.footprint(order[*rank], *rank, u));
-                footprints.map(|at| (at.across.abs() + at.half_span) / view.half_width).fold(0.0, f64::max)
+                let footprints = (0..count).map(|rank| view.footprint(rank, u));
+                footprints
+                    .filter(|at| at.half_span > 0.0 && shown(at.kind))
+                    .map(|at| (at.across.abs() + at.half_span) / view.half_width)
+                    .fold(0.0, f64::max)
             };
             rows.map(of_row).reduce(|| 0.0, f64::max)
         };
+        let staying = |kind| kind == FiberType::Migration;
         let middle = (SLANTS - 1) / 2;
-        let half_width = widest(middle);
+        let least = widest(middle, staying);
+        let half_width = widest(middle, |_| true).min(REACH).max(least);
         let steps = |slant: usize| slant.abs_diff(middle) as f64;
         let widening =
-            (0..SLANTS).filter(|slant| *slant != middle).map(|slant| (widest(slant) - half_width) / steps(slant));
+            (0..SLANTS).filter(|slant| *slant != middle).map(|slant| (widest(slant, staying) - least) / steps(slant));
         let widening = widening.fold(0.0, f64::max);
 
         // Innermost layer first: each next one adds fibers to a copy of the last.
@@ -309,9 +310,8 @@ impl CoreFiber {
             let mut layers = vec![texels; LAYERS];
             for layer in (0..LAYERS).rev() {
                 let end = if layer + 1 == LAYERS { count } else { first_rank(layer + 1, count) };
-                let ranks = first_rank(layer, count)..end;
-                for rank in ranks.filter(|rank| staying[order[*rank]]) {
-                    view.draw(&view.footprint(order[rank], rank, u), half_width, &mut texels);
+                for rank in first_rank(layer, count)..end {
+                    view.draw(&view.footprint(rank, u), half_width, &mut texels);
                 }
                 layers[layer] = texels;
             }
@@ -350,30 +350,37 @@ mod tests {
     use super::*;
     use crate::explicit::Random;
 
-    fn texture(name: &str) -> (Yarn, FiberTable, CoreFiber) {
-        let yarn = Yarn::preset(name).expect(name);
+    fn texture(yarn: Yarn) -> (Yarn, FiberTable, CoreFiber) {
         let table = FiberTable::new(&yarn);
         let texture = CoreFiber::new(&yarn, &table);
         (yarn, table, texture)
     }
 
-    /// Texels of two rows that do not show the same fiber, among the first texture's layer 0.
-    fn differing(texture: &CoreFiber, a: usize, b: usize) -> usize {
-        let row = |k: usize| texture.ranks[k * WIDTH..(k + 1) * WIDTH].iter();
-        row(a).zip(row(b)).filter(|(a, b)| a != b).count()
+    fn without_flyaways(name: &str) -> Yarn {
+        let mut yarn = Yarn::preset(name).expect(name);
+        (yarn.flyaways.loop_density, yarn.flyaways.hair_density) = (0.0, 0.0);
+        yarn
+    }
+
+    /// Texels in which two rows show the same fiber, in layer 0: the mean over all slants and views.
+    fn same(texture: &CoreFiber, a: usize, b: usize) -> f64 {
+        let of_view = |index: usize| {
+            let row = |k: usize| texture.ranks[(index * LAYERS * LENGTH + k) * WIDTH..][..WIDTH].iter();
+            row(a).zip(row(b)).filter(|(a, b)| a == b && **a != NO_RANK).count() as f64
+        };
+        (0..SLANTS * VIEWS).map(of_view).sum::<f64>() / (SLANTS * VIEWS) as f64
     }
 
     #[test]
     fn rows_tile() {
         for name in PRESET_NAMES {
-            let (_, _, texture) = texture(name);
-            let inner = (1..LENGTH).map(|k| differing(&texture, k - 1, k)).max().expect("rows");
-            let (seam, apart) =
-                (differing(&texture, LENGTH - 1, 0), differing(&texture, LENGTH - LENGTH / TURNS / 4, 0));
-            println!("{name}: {inner} at most, {seam} at the seam, {apart} a quarter of a turn apart");
-            assert!(seam <= inner, "{name}: {seam} texels for {inner}");
+            let (_, _, texture) = texture(Yarn::preset(name).expect(name));
+            let inner = (1..LENGTH).map(|k| same(&texture, k - 1, k)).fold(f64::INFINITY, f64::min);
+            let (seam, apart) = (same(&texture, LENGTH - 1, 0), same(&texture, LENGTH - LENGTH / TURNS / 4, 0));
+            println!("{name}: {inner} at least, {seam} at the seam, {apart} a quarter of a turn apart");
+            assert!(seam >= inner, "{name}: {seam} texels for {inner}");
             // The same check sees a seam: rows a quarter of a turn apart.
-            assert!(apart > inner, "{name}: {apart} texels for {inner}");
+            assert!(apart < inner, "{name}: {apart} texels for {inner}");
         }
     }
 
@@ -381,8 +388,9 @@ mod tests {
     fn rates_are_finite_differences_of_the_centre_line() {
         let yarn = Yarn { migration_rate: 1.75, ..Yarn::preset("rayon-4").expect("preset") };
         let table = FiberTable::new(&yarn);
+        let arrangement = Arrangement::new(&yarn, &table);
         for fiber in 0..table.radius.len() {
-            let view = View::new(&yarn, &table, fiber % SLANTS, fiber % VIEWS);
+            let view = View::new(&arrangement, fiber % SLANTS, fiber % VIEWS);
             for k in 0..16 {
                 let (u, along, step) = (f64::from(k) / 4.0, 0.01 * f64::from(k % 5), 1e-7);
                 let [a, b] = [-step, step].map(|step| view.point(fiber, u, along + step).position);
@@ -398,29 +406,32 @@ mod tests {
         rate: DVec2,
     }
 
-    /// What a ray from row u at v sees among fibers of these ranks and numbers, all of them chains of short round tubes.
-    fn met(view: &View, fibers: &[(usize, usize)], u: f64, v: f64) -> Option<Met> {
+    /// What a ray from row u at v sees among the fibers from the `first` on, all of them chains of short round tubes.
+    fn met(view: &View, first: usize, u: f64, v: f64) -> Option<Met> {
         let yarn = view.yarn;
         let radius = yarn.fiber_radius;
         let toward_viewer = DVec3::new(1.0, 0.0, view.slant).normalize();
         let origin = (view.center() + DVec2::new(0.0, v * view.half_width)).extend(0.0);
         // The bundle fills all sections that the ray has it in.
-        let reach = 2.0 * yarn.ellipse_long.max(yarn.ellipse_short) * view.slant.abs() + 4.0 * radius;
+        let farthest = if yarn.flyaway_fibers() > 0 { REACH } else { 1.0 };
+        let reach = 2.0 * farthest * yarn.ellipse_long.max(yarn.ellipse_short) * view.slant.abs() + 4.0 * radius;
         let step = 2.0 * radius;
         let steps = (reach / step).ceil() as i32;
         let mut nearest = (f64::NEG_INFINITY, None);
-        for (rank, fiber) in fibers.iter().copied() {
+        for fiber in first..view.table.radius.len() {
             let at = |k: i32| {
                 let along = f64::from(k) * step;
                 view.point(fiber, u, along).position.extend(along) - origin
             };
+            let width = |k: i32| view.point(fiber, u, f64::from(k) * step).width;
             let mut a = at(-steps);
             for k in -steps..steps {
                 let b = at(k + 1);
                 let beside = |p: DVec3| p - toward_viewer * p.dot(toward_viewer);
                 let (c, d) = (beside(a), beside(b) - beside(a));
                 let share = (-c.dot(d) / d.length_squared()).clamp(0.0, 1.0);
-                let left = radius * radius - (c + d * share).length_squared();
+                let width = width(k);
+                let left = radius * radius - ((c + d * share) / width).length_squared();
                 if left > 0.0 {
                     let lean = (b - a).length() / d.length();
                     let way = a.lerp(b, share).dot(toward_viewer) + left.sqrt() * lean.min(MOST_LEAN);
@@ -431,7 +442,7 @@ mod tests {
                         let along = (b - a).normalize();
                         let farther = bulge * lean.min(MOST_LEAN) * along.dot(toward_viewer) * along.z;
                         let rate = view.point(fiber, u, (f64::from(k) + share) * step + farther).rate;
-                        nearest = (way, Some(Met { rank, height, rate }));
+                        nearest = (way, Some(Met { rank: fiber, height, rate }));
                     }
                 }
                 a = b;
@@ -461,11 +472,10 @@ mod tests {
         of: usize,
     ) -> Agreement {
         const RAYS: u32 = 200;
-        let traced = View::new(yarn, table, of, view);
+        let arrangement = Arrangement::new(yarn, table);
+        let traced = View::new(&arrangement, of, view);
         let [half_width, widening] = texture.half_width.map(f64::from);
         let half_width = half_width + widening * slant.abs_diff((SLANTS - 1) / 2) as f64;
-        let (staying, order) = (staying(yarn, table), FiberTable::drawing_order(yarn));
-        let shown: Vec<_> = (0..order.len()).map(|rank| (rank, order[rank])).filter(|shown| staying[shown.1]).collect();
         let compare = |ray: u32| {
             let mut random = Random::new(1000 * (slant * VIEWS + view) as u32 + ray);
             let mut pick = |count: usize| (count as f64 * random.unit()) as usize;
@@ -474,8 +484,7 @@ mod tests {
             let v = ((j as f64 + 0.5) / WIDTH as f64 * 2.0 - 1.0) * half_width;
             let index = (((slant * VIEWS + view) * LAYERS + layer) * LENGTH + k) * WIDTH + j;
             let (texel, rank) = (texture.texels[index], texture.ranks[index]);
-            let expected =
-                met(&traced, &shown[shown.partition_point(|shown| shown.0 < first_rank(layer, order.len()))..], u, v);
+            let expected = met(&traced, first_rank(layer, table.radius.len()), u, v);
             let mut found = Agreement { texels: 1.0, ..Default::default() };
             found.covered = [f64::from(u8::from(rank != NO_RANK)), f64::from(u8::from(expected.is_some()))];
             let Some(expected) = expected else {
@@ -506,22 +515,38 @@ mod tests {
         })
     }
 
+    /// In every view: at least so many texels show the same fiber, of all views together and of one; heights and rates are off by at most so much.
+    struct Bounds {
+        same: f64,
+        same_in_view: f64,
+        covered: f64,
+        height: f64,
+        rate: f64,
+    }
+
+    fn agree(name: &str, texture: &CoreFiber, yarn: &Yarn, table: &FiberTable, bounds: &Bounds) {
+        let (mut covered, mut same, mut texels) = ([0.0; 2], 0.0, 0.0);
+        for (slant, view) in (0..SLANTS).flat_map(|slant| (0..VIEWS).map(move |view| (slant, view))) {
+            let found = agreement(texture, yarn, table, slant, view, slant);
+            println!("{name}, slant {slant}, view {view}: {found:?}");
+            let told = format!("{name}, slant {slant}, view {view}: {found:?}");
+            assert!(found.same > bounds.same_in_view * found.texels, "{told}");
+            assert!(found.height_error < bounds.height * found.same, "{told}");
+            assert!(found.rate_error < bounds.rate * found.rate, "{told}");
+            covered = [0, 1].map(|k| covered[k] + found.covered[k]);
+            (same, texels) = (same + found.same, texels + found.texels);
+        }
+        println!("{name}: {same} of {texels}, {covered:?} covered");
+        assert!(same > bounds.same * texels, "{name}: {same} of {texels}");
+        assert!((covered[0] / covered[1] - 1.0).abs() < bounds.covered, "{name}: {covered:?}");
+    }
+
     #[test]
     fn texels_show_what_rays_through_round_fibers_meet() {
         for name in PRESET_NAMES {
-            let (yarn, table, texture) = texture(name);
-            let (mut covered, mut same, mut texels) = ([0.0; 2], 0.0, 0.0);
-            for (slant, view) in (0..SLANTS).flat_map(|slant| (0..VIEWS).map(move |view| (slant, view))) {
-                let found = agreement(&texture, &yarn, &table, slant, view, slant);
-                println!("{name}, slant {slant}, view {view}: {found:?}");
-                assert!(found.same > 0.94 * found.texels, "{name}, slant {slant}, view {view}: {found:?}");
-                assert!(found.height_error < 0.03 * found.same, "{name}, slant {slant}, view {view}: {found:?}");
-                assert!(found.rate_error < 0.06 * found.rate, "{name}, slant {slant}, view {view}: {found:?}");
-                covered = [0, 1].map(|k| covered[k] + found.covered[k]);
-                (same, texels) = (same + found.same, texels + found.texels);
-            }
-            assert!(same > 0.985 * texels, "{name}: {same} of {texels}");
-            assert!((covered[0] / covered[1] - 1.0).abs() < 0.005, "{name}: {covered:?}");
+            let (yarn, table, texture) = texture(without_flyaways(name));
+            let bounds = Bounds { same: 0.985, same_in_view: 0.94, covered: 0.005, height: 0.03, rate: 0.06 };
+            agree(name, &texture, &yarn, &table, &bounds);
             // The same comparison sees rays of the opposite slant, of none, and of another view.
             for (slant, of) in [(0, 4), (1, 3), (3, 2)] {
                 let wrong = agreement(&texture, &yarn, &table, slant, 3, of);
@@ -530,10 +555,20 @@ mod tests {
         }
     }
 
+    /// Hairs bend by more than a row is long: within it their direction changes.
+    #[test]
+    fn texels_show_loops_and_hairs_where_rays_meet_them() {
+        for name in ["cotton-2", "rayon-1", "silk-2"] {
+            let (yarn, table, texture) = texture(Yarn::preset(name).expect(name));
+            let bounds = Bounds { same: 0.985, same_in_view: 0.94, covered: 0.006, height: 0.03, rate: 0.18 };
+            agree(name, &texture, &yarn, &table, &bounds);
+        }
+    }
+
     #[test]
     fn a_view_and_its_slant_are_those_of_the_other_edge_turned_over() {
         // Half a turn about the direction to the viewer's section makes the one of the other, rows and columns backwards: as much is covered, as near.
-        let (_, _, texture) = texture("cotton-2");
+        let (_, _, texture) = texture(without_flyaways("cotton-2"));
         let mean = |slant: usize, view: usize| {
             let of_view = LAYERS * LENGTH * WIDTH;
             let texels = &texture.texels[(slant * VIEWS + view) * of_view..][..LENGTH * WIDTH];

@@ -3,6 +3,7 @@
 //! **Section coordinates.** A point q of a yarn's cross-section, in units of the yarn's outer radius, in the frame that turns with
 //! the plies: ply j's centre lies at angle 2πj/K. The section repeats after 1/K of a turn.
 
+mod arrangement;
 mod core_fiber;
 mod density;
 #[cfg(test)]
@@ -13,7 +14,8 @@ mod self_shadow;
 mod tables;
 mod transport;
 
-pub use core_fiber::{CoreFiber, HOLE, TURNS};
+pub use arrangement::TURNS;
+pub use core_fiber::{CoreFiber, HOLE};
 pub use density::SectionDensity;
 pub use occlusion::Occlusion;
 pub use self_shadow::{HALF_WAY, SeenFrom, SelfShadow};

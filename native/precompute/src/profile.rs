@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use lisle_core::yarn::{HAIR_WIDTH, Variate, Yarn, acceptance, astray, radial_density};
+use lisle_core::yarn::{HAIR_WIDTH, Variate, Yarn, acceptance, radial_density};
 
 /// Relative distance from the ply centre up to which the profile goes. Longer hairs are rare and left out beyond it.
 pub const PROFILE_REACH: f64 = 2.5;
@@ -26,7 +26,7 @@ pub fn radial_profile(yarn: &Yarn) -> Vec<f64> {
     let mut rings = Rings(vec![0.0; PROFILE_SIZE]);
     for (start, share) in starts.flyaways() {
         loops(yarn, start, |rho, part| rings.add(rho, share * loop_chance * part));
-        hairs(yarn, start, |rho, part, _| rings.add(rho, share * hair_chance * part));
+        hairs(yarn, start, |rho, part| rings.add(rho, share * hair_chance * part));
     }
     (0..PROFILE_SIZE)
         .map(|k| {
@@ -34,15 +34,6 @@ pub fn radial_profile(yarn: &Yarn) -> Vec<f64> {
             rings.0[k] / RING_AREA + migrating_density(yarn, &starts, accepted, loop_chance + hair_chance, rho)
         })
         .collect()
-}
-
-/// Mean over all periods of how far one of the [`Yarn::flyaway_fibers`] with start radius R is astray, 0 to 1.
-pub fn astray_share(yarn: &Yarn, start: f64) -> f64 {
-    let (loop_chance, hair_chance) = yarn.flyaway_chances();
-    let mut mean = 0.0;
-    loops(yarn, start, |rho, share| mean += loop_chance * share * astray(rho));
-    hairs(yarn, start, |rho, share, is_hair| mean += if is_hair { hair_chance * share * astray(rho) } else { 0.0 });
-    mean
 }
 
 /// Start radii at even steps of R², the disc's area.
@@ -128,8 +119,8 @@ fn loops(yarn: &Yarn, start: f64, mut add: impl FnMut(f64, f64)) {
     }
 }
 
-/// Hairs leave the ply for a part of their period, from phase ½ on, and migrate in the rest. As [`loops`], and whether it is the hair.
-fn hairs(yarn: &Yarn, start: f64, mut add: impl FnMut(f64, f64, bool)) {
+/// Hairs leave the ply for a part of their period, from phase ½ on, and migrate in the rest. As [`loops`].
+fn hairs(yarn: &Yarn, start: f64, mut add: impl FnMut(f64, f64)) {
     let fly = &yarn.flyaways;
     for variate in 0..VARIATES {
         // Strides through the variates make the three independent of each other.
@@ -140,10 +131,10 @@ fn hairs(yarn: &Yarn, start: f64, mut add: impl FnMut(f64, f64, bool)) {
         for k in 0..PHASES {
             let share = 1.0 / f64::from(VARIATES * PHASES);
             let along = (f64::from(k) + 0.5) / f64::from(PHASES);
-            add(start + rise * along * along, share * width, true);
+            add(start + rise * along * along, share * width);
             let phase = 0.5 + width + (1.0 - width) * along;
             let wave = 0.5 - 0.5 * (2.0 * PI * phase).cos();
-            add(start * (yarn.r_min + (1.0 - yarn.r_min) * wave), share * (1.0 - width), false);
+            add(start * (yarn.r_min + (1.0 - yarn.r_min) * wave), share * (1.0 - width));
         }
     }
 }

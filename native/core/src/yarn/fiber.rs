@@ -132,26 +132,23 @@ pub fn ply_point(yarn: &Yarn, twist: &Twist, at: &YarnPoint, ply: u32) -> PlyPoi
     }
 }
 
-/// Relative radius of a fiber within a period, and the angle by which it departs from the regular twist.
-struct Profile {
-    radius: f64,
+/// What a fiber does within a migration period.
+#[derive(Clone, Copy, Debug)]
+pub struct FiberProfile {
+    /// Distance from the ply's centre in its normalised section, where the half axes are 1.
+    pub radius: f64,
     /// d radius / d phase.
-    radius_rate: f64,
-    /// Turns, in the direction of the twist.
-    angle_turns: f64,
-    angle_rate: f64,
-    kind: FiberType,
-    taper: f64,
-    beyond_tip: bool,
-}
-
-/// Relative radii between which a loop or a hair leaves its ply: it counts as astray by half at the ply's border.
-const ASTRAY: (f64, f64) = (0.9, 1.1);
-
-/// How far a loop or a hair at a relative radius is astray, 0 to 1. As far as it is not, a level of detail leaves it to what stands for the ply's own fibers.
-pub fn astray(radius: f64) -> f64 {
-    let x = ((radius - ASTRAY.0) / (ASTRAY.1 - ASTRAY.0)).clamp(0.0, 1.0);
-    x * x * (3.0 - 2.0 * x)
+    pub radius_rate: f64,
+    /// By which it departs from the regular twist, turns in the direction of the twist.
+    pub angle_turns: f64,
+    /// d angle_turns / d phase.
+    pub angle_rate: f64,
+    /// What the fiber is here.
+    pub kind: FiberType,
+    /// Factor on the width, 0 to 1.
+    pub taper: f64,
+    /// See [`FiberPoint::beyond_tip`].
+    pub beyond_tip: bool,
 }
 
 /// Narrowest and widest hair, as a share of its period.
@@ -186,16 +183,24 @@ fn hair_extent(yarn: &Yarn, hash: u32) -> (f64, f64) {
     (1.0_f64.copysign(span), (span.abs() / yarn.migration_period()).clamp(HAIR_WIDTH.0, HAIR_WIDTH.1))
 }
 
-/// `phase` runs from 0 to 1 over a period, whose ends lie at the least radius: types join there to first order.
+/// Fiber `index` of a ply's [`FiberTable`], whose radius is `fiber_radius`, in the period with that hash. `phase` runs from 0 to 1 over the period, whose ends
+/// lie at the least radius: types join there to first order. `periods_per_turn` of the fiber's twist.
 ///
 /// Eq. 2 with its phase moved by half a period. A hair leaves at the middle, where a migrating fiber is
 /// outermost, from that radius rather than from R_min^hair, so that it stays attached, and in a parabola rather than a line, so that
 /// it has no kink; its tip lies at R_min^hair + R_span after an angle of theta_span.
-fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, phase: f64, hash: u32) -> Profile {
+pub fn fiber_profile(
+    yarn: &Yarn,
+    periods_per_turn: f64,
+    index: u32,
+    fiber_radius: f64,
+    phase: f64,
+    hash: u32,
+) -> FiberProfile {
     let wave = 0.5 - 0.5 * (TAU * phase).cos();
     let wave_rate = PI * (TAU * phase).sin();
     let inner = fiber_radius * yarn.r_min;
-    let between = |outer: f64, kind| Profile {
+    let between = |outer: f64, kind| FiberProfile {
         radius: inner + (outer - inner) * wave,
         radius_rate: (outer - inner) * wave_rate,
         angle_turns: 0.0,
@@ -220,13 +225,13 @@ fn profile(yarn: &Yarn, periods_per_turn: f64, index: u32, fiber_radius: f64, ph
             if along > 1.0 {
                 let x = ((along - 1.0) * width / REGROWTH.min(0.5 - width)).min(1.0);
                 let taper = x * x * (3.0 - 2.0 * x);
-                return Profile { taper, beyond_tip: true, ..between(fiber_radius, FiberType::Migration) };
+                return FiberProfile { taper, beyond_tip: true, ..between(fiber_radius, FiberType::Migration) };
             }
             let tip = (variate(fly.hair_r_min, hash, 3) + variate(fly.hair_r_span, hash, 4)) / yarn.mean_axis();
             let rise = tip.max(fiber_radius) - fiber_radius;
             let turns = variate(fly.hair_theta_span, hash, 5) / TAU;
             let astray = direction * (turns - width / periods_per_turn);
-            Profile {
+            FiberProfile {
                 radius: fiber_radius + rise * along * along,
                 radius_rate: 2.0 * along * rise * direction / width,
                 angle_turns: astray * along * along,
@@ -297,7 +302,7 @@ pub fn fiber_point(yarn: &Yarn, twist: &Twist, table: &FiberTable, at: &YarnPoin
     let phase = migration_phase(twist, table, at.length, fiber);
     let hash = period_hash(twist, fiber, phase.floor());
     let periods_per_turn = twist.migration / twist.fiber;
-    let shape = profile(yarn, periods_per_turn, fiber.index, table.radius[index], phase.fract(), hash);
+    let shape = fiber_profile(yarn, periods_per_turn, fiber.index, table.radius[index], phase.fract(), hash);
     let phase_rate = at.length_rate * twist.migration;
 
     let sign = yarn.fiber_twist.signum();

@@ -8,8 +8,8 @@ mod table;
 
 pub use curve::{Knot, Segment, YarnPoint};
 pub use fiber::{
-    Break, Fiber, FiberPoint, FiberType, HAIR_WIDTH, PlyPoint, Twist, astray, breaks, fiber_point, fiber_seed,
-    ply_point,
+    Break, Fiber, FiberPoint, FiberProfile, FiberType, HAIR_WIDTH, PlyPoint, Twist, breaks, fiber_point, fiber_profile,
+    fiber_seed, ply_point,
 };
 pub use parameters::{Flyaways, Variate, Yarn, YarnError};
 pub use presets::PRESET_NAMES;

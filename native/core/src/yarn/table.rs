@@ -1,7 +1,7 @@
 use std::f64::consts::E;
 
 use super::Yarn;
-use crate::sampling::{even_ranks, hash_combine, unit_from_hash};
+use crate::sampling::{hash_combine, unit_from_hash};
 
 /// Radial density of fibers in a ply, unnormalised [Zhao2016; models: checked against the published fits].
 ///
@@ -50,23 +50,10 @@ impl FiberTable {
         Self::draw(yarn, yarn.fibers_per_ply as usize, Self::DRAWS)
     }
 
-    /// The fibers in the order in which levels of detail draw them: the outermost first, but those that may fly away ([`Yarn::flyaway_fibers`]), so that
-    /// every beginning is spread evenly over them. From afar the first of them stand for all; the outermost of all would be lit more than those.
-    pub fn drawing_order(yarn: &Yarn) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..yarn.fibers_per_ply as usize).collect();
-        for (fiber, rank) in even_ranks(yarn.flyaway_fibers() as usize).into_iter().enumerate() {
-            order[rank] = fiber;
-        }
-        order
-    }
-
-    /// A fiber in two words of 16-bit numbers, the lower half first: radius and number, angle and start of the migration.
+    /// A fiber in two words of 16-bit numbers, the lower half first: radius, angle and start of the migration.
     pub fn packed(&self, fiber: usize) -> [u32; 2] {
         let code = |value: f64| (value * STEPS) as u32;
-        [
-            code(self.radius[fiber]) | (fiber as u32) << 16,
-            code(self.angle_turns[fiber]) | code(self.migration_turns[fiber]) << 16,
-        ]
+        [code(self.radius[fiber]), code(self.angle_turns[fiber]) | code(self.migration_turns[fiber]) << 16]
     }
 
     /// So many fibers, each of as many samples.
@@ -118,29 +105,6 @@ mod tests {
     fn a_wrong_density_is_rejected_by_the_same_check() {
         let yarn = Yarn { density_beta: 0.6, ..Yarn::preset("cotton-1").expect("preset") };
         assert!((acceptance(yarn.density_beta, yarn.density_epsilon) - PUBLISHED[0]).abs() > 0.1);
-    }
-
-    #[test]
-    fn the_first_that_fly_away_stand_for_all_that_do() {
-        for name in PRESET_NAMES {
-            let yarn = Yarn::preset(name).expect(name);
-            let (table, order) = (FiberTable::new(&yarn), FiberTable::drawing_order(&yarn));
-            let mut fibers = order.clone();
-            fibers.sort_unstable();
-            assert!(fibers.into_iter().eq(0..yarn.fibers_per_ply as usize), "{name}: every fiber once");
-            let astray = yarn.flyaway_fibers() as usize;
-            assert!(order[astray..].iter().copied().eq(astray..order.len()), "{name}: the others as they are");
-            let mean = |fibers: &mut dyn Iterator<Item = usize>, count: usize| {
-                fibers.take(count).map(|fiber| table.radius[fiber]).sum::<f64>() / count as f64
-            };
-            let all = mean(&mut (0..astray), astray);
-            let bound = 0.13 * (table.radius[0] - table.radius[astray - 1]);
-            for count in 3..=astray {
-                let off = (mean(&mut order.iter().copied(), count) - all).abs();
-                assert!(off < bound, "{name}, {count} of {astray}: {off}");
-            }
-            assert!((mean(&mut (0..astray), 3) - all).abs() > bound, "{name}: the outermost pass as well");
-        }
     }
 
     #[test]
