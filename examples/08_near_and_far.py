@@ -9,7 +9,7 @@ import numpy as np
 
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("out", nargs="?", type=Path, default=Path("out/examples"), help="folder for the pictures")
-parser.add_argument("scale", nargs="?", type=float, default=1.0, help="of the pictures; 1: the first is 960 pixels wide")
+parser.add_argument("scale", nargs="?", type=float, default=1.0, help="of the pictures: 960 pixels wide at 1")
 parser.add_argument("samples", nargs="?", type=int, default=32)
 arguments = parser.parse_args()
 arguments.out.mkdir(parents=True, exist_ok=True)
