@@ -103,7 +103,7 @@ fn zooming_changes_brightness_smoothly_and_keeps_the_area() {
     assert!(failures.is_empty(), "{failures:#?}");
 }
 
-/// All steps one after the other; the area, which moves slowly and takes every fiber of the glove, at each fifth. Also printed: how much brighter
+/// All steps one after the other; the area, which moves slowly and takes every fiber of the glove, at each tenth. Also printed: how much brighter
 /// the next step is.
 #[test]
 #[ignore = "many minutes on a software driver: cargo test -p lisle-gpu --release --test detail -- --ignored"]
@@ -113,9 +113,9 @@ fn every_step_of_the_zoom_is_smooth() {
     let mut before: Option<f64> = None;
     let mut failures = Vec::new();
     for k in 0..=STEPS {
-        let (here, step) = zoom.by_level(k, 16);
+        let (here, step) = zoom.by_level(k, 4);
         let change = before.map_or(0.0, |before| here / before - 1.0);
-        let (area, brightness) = if k % 5 == 0 { zoom.beside_every_fiber(k) } else { (0.0, 0.0) };
+        let (area, brightness) = if k % 10 == 0 { zoom.beside_every_fiber(k) } else { (0.0, 0.0) };
         let figures = [change, step, area, brightness].map(|figure| format!("{:+.3}", 100.0 * figure));
         println!("{k}\t{here:.5}\t{}", figures.join("\t"));
         failures.extend(complaints(k, step, area));
