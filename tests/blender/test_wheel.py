@@ -176,7 +176,8 @@ def test_a_frame_alone_in_another_process_is_bit_identical(lisle, tmp_path):
     from test_rest import frame_channels, stretching
 
     lit_yarns()
-    stretching()
+    # Not between two rows of pixels, where a yarn as thin as one of them is seldom met by few samples.
+    stretching(y=0.05)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     in_sequence = frame_channels(tmp_path, range(1, 6))
     script = ALONE.format(here=str(HERE), blend=str(tmp_path / "scene.blend"), picture=str(tmp_path / "alone.exr"))

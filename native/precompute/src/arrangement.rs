@@ -18,9 +18,6 @@ const MANY_PERIODS: f64 = 4000.0;
 /// Numbers that tell how many loops and hairs there are, how far out, in which directions, and on which side.
 const MOMENTS: usize = 11;
 
-/// How much each of them matters. The second is what is outside of the ply.
-const WEIGHTS: Moments = [1.0, 8.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0];
-
 type Moments = [f64; MOMENTS];
 
 /// What the fibers of a ply do along [`TURNS`] turns of it, so that it repeats after them.
@@ -65,8 +62,7 @@ impl<'a> Arrangement<'a> {
             let with = |choice: usize| -> Moments {
                 std::array::from_fn(|k| off[k] + choices[place][choice][k] - means[place][k])
             };
-            let strangeness =
-                |choice: usize| (0..MOMENTS).map(|k| WEIGHTS[k] * with(choice)[k].powi(2) / variances[k]).sum::<f64>();
+            let strangeness = |choice: usize| (0..MOMENTS).map(|k| with(choice)[k].powi(2) / variances[k]).sum::<f64>();
             let best = (0..CHOICES as usize).min_by(|a, b| strangeness(*a).total_cmp(&strangeness(*b))).unwrap_or(0);
             (off, chosen[place]) = (with(best), best as u32);
         }
@@ -169,7 +165,7 @@ mod tests {
             let first = if inner { yarn.flyaway_fibers() as usize / 3 } else { 0 };
             let astray = |at: &FiberProfile| at.taper * outside(at.radius);
             let figures = [
-                ("outside", 0.05, off(&yarn, first, astray, |at, _| astray(at))),
+                ("outside", 0.07, off(&yarn, first, astray, |at, _| astray(at))),
                 ("in front", 0.05, off(&yarn, first, astray, |at, angle| astray(at) * angle.cos())),
                 ("to a side", 0.05, off(&yarn, first, astray, |at, angle| astray(at) * angle.sin())),
             ];
