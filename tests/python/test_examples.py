@@ -56,8 +56,7 @@ def run(renderer, monkeypatch, tmp_path):
         ("02_stretch_and_wave.py", [f"stretch_{frame:04d}.png" for frame in range(24)]),
         ("03_bending_sleeve.py", [f"sleeve_{number:04d}.png" for number in range(3)]),
         ("04_usd.py", ["swatch.usdc", *(f"usd_{frame:04d}.png" for frame in (1, 2, 3))]),
-        ("07_striped_drape.py", ["drape.png"]),
-        ("08_near_and_far.py", [f"{name}.png" for name in ("near", "middle", "far", "edge")]),
+        ("07_readme_pictures.py", [f"{name}.png" for name in ("drape", "near", "middle", "far", "edge")]),
     ],
 )
 def test_an_example_runs_and_its_yarns_do_not_intersect(run, name, files):

@@ -106,7 +106,7 @@ fn zooming_changes_brightness_smoothly_and_keeps_the_area() {
 /// All steps one after the other; the area, which moves slowly and takes every fiber of the glove, at each tenth. Also printed: how much brighter
 /// the next step is.
 #[test]
-#[ignore = "many minutes on a software driver: cargo test -p lisle-gpu --release --test detail -- --ignored"]
+#[ignore = "five minutes on a software driver: cargo test -p lisle-gpu --release --test detail -- --ignored"]
 fn every_step_of_the_zoom_is_smooth() {
     let Some(yarns) = glove() else { return };
     let zoom = Zoom { yarns };

@@ -23,8 +23,8 @@ type Moments = [f64; MOMENTS];
 /// What the fibers of a ply do along [`TURNS`] turns of it, so that it repeats after them.
 ///
 /// The migration rate of Eq. 2 is rounded to an odd number of periods, which repeats in no fewer turns. Which periods are loops and hairs is left to chance in a
-/// yarn. Here there are some dozens of them, always seen on the same side: chance would have a tenth more or fewer than a yarn has on the whole, or most of them
-/// where they are hidden. So they are chosen, one after the other, to keep their moments at the mean ones.
+/// yarn. Here there are some dozens of them, always seen on the same side: chance would have up to half of them more or fewer than a yarn has on the whole, or
+/// most of them where they are hidden. So they are chosen, one after the other, to keep their moments at the mean ones.
 #[derive(Clone, Debug)]
 pub struct Arrangement<'a> {
     pub yarn: &'a Yarn,
@@ -35,6 +35,7 @@ pub struct Arrangement<'a> {
 }
 
 impl<'a> Arrangement<'a> {
+    /// Of a valid yarn, and its table.
     pub fn new(yarn: &'a Yarn, table: &'a FiberTable) -> Self {
         let any = Self::by_chance(yarn, table, 0);
         let places = f64::from(yarn.flyaway_fibers()) * Self::periods_of(yarn);
@@ -43,7 +44,7 @@ impl<'a> Arrangement<'a> {
         }
         let choices: Vec<[Moments; CHOICES as usize]> = (0..places as usize)
             .into_par_iter()
-            .map(|place| std::array::from_fn(|choice| any.moments(place, choice as u32)))
+            .map(|place| std::array::from_fn(|choice| any.moments(place as u32, choice as u32)))
             .collect();
         let mean = |place: usize, of: &dyn Fn(&Moments) -> f64| {
             choices[place].iter().map(of).sum::<f64>() / f64::from(CHOICES)
@@ -79,13 +80,15 @@ impl<'a> Arrangement<'a> {
         let periods = Self::periods_of(self.yarn);
         let migrated = self.yarn.fiber_twist.signum() * periods / TURNS as f64 * turns;
         let phase = migrated + self.table.migration_turns[fiber];
-        let place = fiber * periods as usize + phase.floor().rem_euclid(periods) as usize;
-        self.profile_with(place, phase - phase.floor(), self.chosen.get(place).copied().unwrap_or(0))
+        // Of more places than there are numbers, some share one: those are left to chance.
+        let place = (fiber as u32).wrapping_mul(periods as u32).wrapping_add(phase.floor().rem_euclid(periods) as u32);
+        let choice = self.chosen.get(place as usize).copied().unwrap_or(0);
+        self.profile_at(fiber, place, phase - phase.floor(), choice)
     }
 
-    fn profile_with(&self, place: usize, phase: f64, choice: u32) -> FiberProfile {
-        let fiber = place / Self::periods_of(self.yarn) as usize;
-        let hash = hash_combine(hash_combine(self.seed, place as u32), choice);
+    /// Of one period; `place` counts the periods of all fibers.
+    fn profile_at(&self, fiber: usize, place: u32, phase: f64, choice: u32) -> FiberProfile {
+        let hash = hash_combine(hash_combine(self.seed, place), choice);
         fiber_profile(self.yarn, self.yarn.migration_rate, fiber as u32, self.table.radius[fiber], phase, hash)
     }
 
@@ -95,15 +98,15 @@ impl<'a> Arrangement<'a> {
     }
 
     /// Of one period with that choice.
-    fn moments(&self, place: usize, choice: u32) -> Moments {
+    fn moments(&self, place: u32, choice: u32) -> Moments {
         let periods = Self::periods_of(self.yarn);
-        let (fiber, period) = (place / periods as usize, place % periods as usize);
+        let (fiber, period) = ((place / periods as u32) as usize, place % periods as u32);
         let sign = self.yarn.fiber_twist.signum();
         let mut sums = [0.0; MOMENTS];
         for k in 0..PHASES {
             let phase = (k as f64 + 0.5) / PHASES as f64;
-            let at = self.profile_with(place, phase, choice);
-            let migrated = period as f64 + phase - self.table.migration_turns[fiber];
+            let at = self.profile_at(fiber, place, phase, choice);
+            let migrated = f64::from(period) + phase - self.table.migration_turns[fiber];
             let turns = sign * (migrated / periods * TURNS as f64 + at.angle_turns) + self.table.angle_turns[fiber];
             let (outside, area) = (outside(at.radius), at.radius.powi(2));
             let [once, twice] = [1.0, 2.0].map(|times| DVec2::from_angle(times * TAU * turns) * outside);
@@ -190,5 +193,19 @@ mod tests {
         };
         assert!(differs(TURNS as f64) < 1e-9 && differs(-(TURNS as f64)) < 1e-9);
         assert!(differs(0.5 * TURNS as f64) > 0.1);
+    }
+
+    #[test]
+    fn any_valid_rate_of_migration_has_an_arrangement() {
+        for (fibers_per_ply, migration_rate) in [(1, 1e300), (60_000 / 3, 40.0), (20, 1e-300), (37, 1e9)] {
+            let yarn = Yarn { fibers_per_ply, migration_rate, ..Yarn::preset("cotton-2").expect("preset") };
+            yarn.validate().expect("valid");
+            let table = FiberTable::new(&yarn);
+            let arrangement = Arrangement::new(&yarn, &table);
+            for fiber in 0..fibers_per_ply as usize {
+                let at = arrangement.profile(fiber, 1.3);
+                assert!((0.0..10.0).contains(&at.radius), "{fibers_per_ply} fibers, rate {migration_rate}: {at:?}");
+            }
+        }
     }
 }

@@ -28,11 +28,12 @@ const WIDEST_STRIDE: usize = 8;
 /// What the tangent of the slant grows by from one texture to the next.
 const SLANT_STEP: f64 = 0.85;
 
-/// Textures that stand for the inner fibers of a ply [WuYuksel2018 §3.2, Fig. 5].
+/// Textures that stand for the fibers of a ply that are not drawn one by one [WuYuksel2018 §3.2, Fig. 5].
 ///
 /// They show a ply of a straight yarn in its NORMALISED section (half axes divided out: a unit disc), seen from +h, with +v across. Row u is the turn of the
 /// bundle: fiber i lies at angle 2π(u + angle_turns_i) from +h towards +v, at radius R_i (R_min + (1 − R_min)(½ − ½ cos 2π(± s u + migration_turns_i))), which is
-/// Eq. 2 as [`Arrangement`] has it, or a loop or a hair. (In a single turn each fiber has one radius at each angle, and the few outermost ones decide how bright an edge is.) Sample them with the nearest texel: neighbours may be different fibers.
+/// Eq. 2 as [`Arrangement`] has it, or a loop or a hair. (In a single turn each fiber has one radius at each angle, and the few outermost ones decide how
+/// bright an edge is.) Sample them with the nearest texel: neighbours may be different fibers.
 ///
 /// A ray goes to the viewer from the section of its row, where it passes h = 0 of the ply at v. Seen at a slant it leaves that section: by the time that it comes to a
 /// fiber, the bundle has turned in its ply, and the ply about the yarn. How long a section cuts a fiber, and how far it bulges, hangs on where it goes there.
@@ -48,8 +49,7 @@ pub struct CoreFiber {
     pub slant_step: f32,
     /// View k is for sin ψ |sin ψ| = 2 k / (views − 1) − 1.
     pub views: usize,
-    /// Layer l shows the fibers of rank ≥ m (l / layers)² in the order of [`FiberTable`], the outermost first. Loops and hairs
-    /// are among them.
+    /// Layer l shows the fibers of rank ≥ m (l / layers)² in the order of [`FiberTable`], the outermost first, loops and hairs among them.
     pub layers: usize,
     /// Turns after which they repeat.
     pub turns: usize,
