@@ -5,10 +5,9 @@ use crate::cell::{Cell, POINTS_PER_STITCH};
 use crate::distance::{Polyline, closest_approach};
 use crate::pattern::Pattern;
 use crate::relax::relax;
-use crate::surface::{Surface, lift};
+use crate::surface::{Surface, lay};
 use glam::{DVec2, DVec3};
 use lisle_core::curve::{Basis, Curves};
-use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Yarn radius of cloth that does not ask for another, in metres.
@@ -138,15 +137,7 @@ impl Knit {
     /// # Errors
     /// [`Error::Surface`] where the surface has no finite position or normal.
     pub fn points_on(&self, surface: &impl Surface) -> Result<Vec<[f32; 3]>, Error> {
-        let per_course = self.course_points();
-        (0..self.point_count())
-            .into_par_iter()
-            .map(|i| {
-                let (course, index) = (i / per_course, i % per_course);
-                let (place, height_m) = self.place(course, index);
-                lift(surface, place, height_m, [course, index])
-            })
-            .collect()
+        lay(surface, self.courses, |_| self.course_points(), |course, index| self.place(course, index))
     }
 
     /// Lays the cloth on a surface: a curve per course, with the yarn radius.

@@ -244,8 +244,13 @@ fn impossible_cloth_is_refused_by_name() {
     let (courses, wales) = (1 << 40, 1 << 40);
     assert_eq!(error(Knit::flat(&rib, courses, wales, 1e-3)), Error::TooManyPoints { courses, wales });
 
-    let knit = Knit::flat(&rib, 2, 4, 1e-3).expect("cloth");
-    let folded = |_: f64, v: f64| DVec3::new(0.0, 0.0, v);
-    assert!(matches!(knit.points_on(&folded), Err(Error::Surface { .. })));
+    let knit = Knit::flat(&rib, 8, 4, 1e-3).expect("cloth");
+    // Later courses are refused sooner; the error is the first course's.
+    let folded = |_: f64, v: f64| {
+        std::thread::sleep(std::time::Duration::from_millis(if v < 0.1 { 10 } else { 0 }));
+        DVec3::new(0.0, 0.0, v)
+    };
+    let refused = knit.points_on(&folded);
+    assert!(matches!(refused, Err(Error::Surface { yarn: 0, index: 0, .. })), "{refused:?}");
     assert!(knit.points_on(&FlatPatch { size_m: DVec2::ONE }).is_ok());
 }

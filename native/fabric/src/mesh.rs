@@ -96,7 +96,7 @@ impl MeshKnit {
         let wales = if round { repeats * columns } else { wales };
         let knit = Knit::of_cell(cell, courses, wales, yarn_radius_m, round)?;
         let islands = mesh.islands(SAME_UV * (high - low).length());
-        let runs: Result<Vec<Vec<Run>>, Error> = (0..courses)
+        let runs: Vec<Result<Vec<Run>, Error>> = (0..courses)
             .into_par_iter()
             .map(|course| {
                 let points: Result<Vec<Option<(usize, MeshPoint)>>, Error> = (0..knit.course_points())
@@ -114,7 +114,8 @@ impl MeshKnit {
                 Ok(cut(&points?, round))
             })
             .collect();
-        let runs: Vec<Run> = runs?.into_iter().flatten().collect();
+        // Errors are looked for one course after the other: the first is the same whichever thread is quicker.
+        let runs: Vec<Run> = runs.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
         if runs.is_empty() {
             return Err(too_small);
         }

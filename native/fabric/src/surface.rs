@@ -2,6 +2,7 @@
 
 use crate::Error;
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// A parametric surface in metres, right-handed, Z up.
@@ -28,19 +29,27 @@ pub trait Surface: Sync {
     }
 }
 
-/// The point at a height in metres above a place (u, v) of a surface; `who` names its yarn and number in errors.
-pub(crate) fn lift(
+/// The control points of all yarns on a surface, one yarn after the other.
+///
+/// `count` gives a yarn's number of points, `place` where on the surface each of them lies and its height in metres.
+///
+/// # Errors
+/// [`Error::Surface`] for the first point, by yarn and number, where the surface has no finite position or normal.
+pub(crate) fn lay(
     surface: &impl Surface,
-    place: DVec2,
-    height_m: f64,
-    [yarn, index]: [usize; 2],
-) -> Result<[f32; 3], Error> {
-    let position = surface.position(place.x, place.y) + surface.normal(place.x, place.y) * height_m;
-    if position.is_finite() {
-        Ok(position.as_vec3().to_array())
-    } else {
-        Err(Error::Surface { yarn, index, u: place.x, v: place.y })
-    }
+    yarns: usize,
+    count: impl Fn(usize) -> usize + Sync,
+    place: impl Fn(usize, usize) -> (DVec2, f64) + Sync,
+) -> Result<Vec<[f32; 3]>, Error> {
+    let point = |yarn: usize, index: usize| {
+        let (DVec2 { x: u, y: v }, height_m) = place(yarn, index);
+        let position = surface.position(u, v) + surface.normal(u, v) * height_m;
+        position.is_finite().then(|| position.as_vec3().to_array()).ok_or(Error::Surface { yarn, index, u, v })
+    };
+    let laid: Vec<Result<Vec<[f32; 3]>, Error>> =
+        (0..yarns).into_par_iter().map(|yarn| (0..count(yarn)).map(|index| point(yarn, index)).collect()).collect();
+    // Only now is it looked for errors, so that the first is the same whichever thread is quicker.
+    Ok(laid.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 impl<F: Fn(f64, f64) -> DVec3 + Sync> Surface for F {

@@ -2,11 +2,10 @@
 
 use crate::Error;
 use crate::distance::{Polyline, closest_approach};
-use crate::surface::{Surface, lift};
+use crate::surface::{Surface, lay};
 use crate::weave::Weave;
 use glam::{DVec2, DVec3};
 use lisle_core::curve::{Basis, Curves};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Spacing of yarns that does not ask for another, where 1 is as tight as round yarns can be.
@@ -97,17 +96,11 @@ impl Woven {
     /// [`Error::Surface`] where the surface has no finite position or normal.
     pub fn points_on(&self, surface: &impl Surface) -> Result<Vec<[f32; 3]>, Error> {
         let extent = self.extent();
-        let yarns: Result<Vec<Vec<[f32; 3]>>, Error> = (0..self.yarn_count())
-            .into_par_iter()
-            .map(|yarn| {
-                let at = |index| {
-                    let point = self.point(yarn, index);
-                    lift(surface, point.truncate() / extent, point.z * self.yarn_radius_m, [yarn, index])
-                };
-                (0..self.yarn_points(yarn)).map(at).collect()
-            })
-            .collect();
-        Ok(yarns?.concat())
+        let place = |yarn, index| {
+            let point = self.point(yarn, index);
+            (point.truncate() / extent, point.z * self.yarn_radius_m)
+        };
+        lay(surface, self.yarn_count(), |yarn| self.yarn_points(yarn), place)
     }
 
     /// Lays the cloth on a surface: a curve per yarn, with the yarn radius.

@@ -142,5 +142,6 @@ fn impossible_cloth_is_refused_by_name() {
     assert_eq!(error(5, 5, 1e-3, 0.9), Error::Spacing { value: 0.9 });
     assert!(matches!(error(5, 5, 1e-3, f64::NAN), Error::Spacing { .. }));
     let woven = Woven::new(&plain, 2, 2, 1e-3, 2.0).expect("cloth");
-    assert!(matches!(woven.points_on(&|_: f64, v: f64| DVec3::new(0.0, 0.0, v)), Err(Error::Surface { yarn: 0, .. })));
+    let refused = woven.points_on(&|_: f64, v: f64| DVec3::new(0.0, 0.0, v));
+    assert!(matches!(refused, Err(Error::Surface { yarn: 0, index: 0, .. })), "{refused:?}");
 }
