@@ -46,8 +46,7 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
     if segment >= frame.segment_count {
         return;
     }
-    let before = select(0u, segment_work[max(segment, 1u) - 1u] & WORK_MASK, segment % BLOCK != 0u);
-    if (segment_work[segment] & WORK_MASK) == before {
+    if (segment_work[segment] & IS_IN_VIEW) == 0u {
         return;
     }
     let draw = find_draw(segment);
@@ -58,25 +57,29 @@ fn visibility_cores(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invo
         return;
     }
     let steps = core_steps(yarn, s, scale.radius_pixels);
-    var ply = 0u;
+    let parts = Parts(frame.core_parts, workgroup.z);
+    var begin = yarn_point(s, 0.0);
+    var step = 1u;
     loop {
-        var previous = core_end(core_point(yarn, s, yarn_point(s, 0.0), ply, frame.viewer));
-        var step = 1u;
+        let t0 = f32(step - 1u) / f32(steps);
+        let t1 = f32(step) / f32(steps);
+        let end = yarn_point(s, t1);
+        var ply = 0u;
         loop {
-            let t = f32(step) / f32(steps);
-            let next = core_end(core_point(yarn, s, yarn_point(s, t), ply, frame.viewer));
-            if min(previous.depth, next.depth) > frame.near {
-                let t0 = f32(step - 1u) / f32(steps);
-                draw_core(yarn, Parts(frame.core_parts, workgroup.z), scale, t0, t, previous, next, segment, ply * (yarn.fibers + 1u), step);
+            // Both ends anew each step: an array of the last step's ends would be memory, dearer than they are.
+            let a = core_end(core_point(yarn, s, begin, ply, frame.viewer));
+            let b = core_end(core_point(yarn, s, end, ply, frame.viewer));
+            if min(a.depth, b.depth) > frame.near {
+                draw_core(yarn, parts, scale, t0, t1, a, b, segment, ply * (yarn.fibers + 1u), step);
             }
-            previous = next;
-            step++;
-            if step > steps {
+            ply++;
+            if ply >= yarn.plies {
                 break;
             }
         }
-        ply++;
-        if ply >= yarn.plies {
+        begin = end;
+        step++;
+        if step > steps {
             break;
         }
     }

@@ -117,7 +117,7 @@ fn find_segment(item: u32) -> Found {
         }
     }
     let before = select(0u, segment_work[max(first, 1u) - 1u] & WORK_MASK, first > low * BLOCK);
-    return Found(first, rest - before, segment_work[first] >> WORK_BITS);
+    return Found(first, rest - before, (segment_work[first] >> WORK_BITS) & EXPONENT_MASK);
 }
 
 // What the fibers of a segment share.

@@ -9,11 +9,13 @@ const CHUNK: u32 = 16u;
 // Pixels that one thread visits, about: a software driver ends a thread after 65535 turns of its loops, and on a GPU long
 // threads make the others wait. Larger lines are shared by a power of two of threads, which take turns along them.
 const VISITS: f32 = 24000.0;
-// Items of one segment, at most, and what the items of a block's segments up to one of them take of its word; above it is
-// the number of sharing threads, as a power of two.
+// Items of one segment, at most, and what the items of a block's segments up to one of them take of its word; above it are
+// the number of sharing threads, as a power of two, and whether the segment is in view.
 const MOST_ITEMS: u32 = 65535u;
 const WORK_BITS: u32 = 24u;
 const WORK_MASK: u32 = 0xffffffu;
+const EXPONENT_MASK: u32 = 0xfu;
+const IS_IN_VIEW: u32 = 0x80000000u;
 
 // Plies that have threads of their own, for so many fibers each: if there are few, one thread draws all plies.
 fn plies_apart(plies: u32, fibers: u32) -> u32 {

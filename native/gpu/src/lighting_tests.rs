@@ -156,7 +156,7 @@ impl Bench {
             (6, storage(bytemuck::cast_slice::<layout::Yarn, u8>(&tables.yarns))),
             (7, storage(bytemuck::cast_slice(&tables.materials))),
         ];
-        let words = WordTexture::new(&self.gpu, "tables", &tables.words.0).expect("a texture");
+        let words = WordTexture::new(&self.gpu, "tables", &tables.words.rest).expect("a texture");
         let answers = self.buffer(&vec![0; size], Usage::STORAGE | Usage::COPY_SRC);
         let own = [(0, storage(bytemuck::cast_slice(queries))), (1, answers.clone())];
         let group = |index: u32, buffers: &[(u32, wgpu::Buffer)], texture: Option<wgpu::BindGroupEntry>| {
@@ -205,11 +205,12 @@ impl Case {
         let tables = Tables::new(&yarn, 1);
         let mut buffer = TableBuffer::default();
         // Something before it, so that the offsets count.
-        buffer.words.0.resize(37, f32::NAN.to_bits());
+        buffer.words.rest.resize(37, f32::NAN.to_bits());
         buffer.add_yarn(&YarnTables::new(&yarn, &tables));
-        buffer.add_material(&material);
+        let scattering = ScatteringTables::new(&material);
+        buffer.add_material(&material, &scattering);
         let name = format!("{yarn_name}, {material_name}");
-        Self { name, yarn: tables, material: ScatteringTables::new(&material), buffer }
+        Self { name, yarn: tables, material: scattering, buffer }
     }
 
     /// Greatest difference of each value, relative to that value plus the hundredth part of one; not a number counts as infinite.

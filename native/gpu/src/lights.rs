@@ -234,12 +234,3 @@ pub(crate) fn most_views(lights: &[Light], sky_views: u32, meshes: bool) -> u32 
     let of = |light: &Light| if matches!(light, Light::Sun { .. } | Light::Gaussian { .. }) { 1 } else { 6 };
     (lights.iter().map(of).sum::<u32>() + sky_views) * if meshes { 2 } else { 1 }
 }
-
-/// Whether samples of the light differ.
-pub(crate) fn is_soft(light: &Light) -> bool {
-    match *light {
-        Light::Sun { angle_rad, .. } => angle_rad > 0.0,
-        Light::Point { radius, .. } => radius > 0.0,
-        Light::Area { .. } | Light::Gaussian { .. } => true,
-    }
-}

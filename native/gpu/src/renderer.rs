@@ -10,7 +10,7 @@ use lisle_precompute::TransportStore;
 use crate::aov::{NO_PLANE, Planes};
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
-use crate::frame::{FrameBuffers, FrameInput, MOST_SKY_VIEWS, PictureListener, Recorder};
+use crate::frame::{DrawnShadows, FrameBuffers, FrameInput, MOST_SKY_VIEWS, PictureListener, Recorder};
 use crate::mesh_raster::MeshPipelines;
 use crate::meshes::MeshBuffers;
 use crate::motion::{Motion, Neighbour};
@@ -60,6 +60,7 @@ struct Drawing {
     sky: Option<SkyBuffers>,
     meshes: Option<MeshBuffers>,
     frame: Option<FrameBuffers>,
+    shadows: Option<DrawnShadows>,
 }
 
 impl Renderer {
@@ -93,6 +94,7 @@ impl Renderer {
             sky: None,
             meshes: None,
             frame: None,
+            shadows: None,
         };
         Ok(Self { adapter, submissions, drawing: Arc::new(Turns::new(drawing)) })
     }
@@ -235,15 +237,16 @@ impl Drawing {
             neighbours,
             sky: &sky,
             meshes: &meshes,
+            mesh_pipelines: mesh_pipelines.as_ref(),
         };
         let frame = FrameBuffers::fit(gpu, self.frame.take(), &input, &moment.draws, region)?;
         let arrays = frame.arrays(gpu, &buffers);
         pipelines.ensure(gpu, arrays, &wanted)?;
-        let mesh_pipelines = mesh_pipelines.as_ref();
-        let mut recorder = Recorder::new(gpu, pipelines, mesh_pipelines, listener, &input, &frame, moment)?;
+        let shadows = self.shadows.take();
+        let mut recorder = Recorder::new(gpu, pipelines, listener, &input, &frame, moment, shadows)?;
         // What is left of a picture that was stopped is done before another begins.
         let image = recorder.picture(region).or_else(|error| gpu.finish().and(Err(error)));
-        drop(recorder);
+        let shadows = recorder.into_shadows();
         buffers.displaced = !motion.shapes.is_empty();
         drop(motion);
         // After an error of the device, of memory for one, buffers may be none: nothing of them is kept.
@@ -252,6 +255,7 @@ impl Drawing {
             self.sky = Some(sky);
             self.meshes = Some(meshes);
             self.frame = Some(frame);
+            self.shadows = shadows;
         }
         image
     }

@@ -31,9 +31,12 @@ fn pack_shared_exponent(color: [f32; 3]) -> u32 {
     code(color[0]) | (code(color[1]) << 9) | (code(color[2]) << 18) | (((exponent + BIAS) as u32) << 27)
 }
 
-/// Tables one after the other.
+/// Tables one after the other, of which the first so many words are elsewhere.
 #[derive(Default)]
-pub(crate) struct Words(pub Vec<u32>);
+pub(crate) struct Words {
+    pub first: u32,
+    pub rest: Vec<u32>,
+}
 
 impl Words {
     fn append(&mut self, values: impl IntoIterator<Item = f32>) -> u32 {
@@ -41,9 +44,13 @@ impl Words {
     }
 
     fn append_words(&mut self, words: impl IntoIterator<Item = u32>) -> u32 {
-        let first = self.0.len() as u32;
-        self.0.extend(words);
-        first
+        let place = self.end();
+        self.rest.extend(words);
+        place
+    }
+
+    pub fn end(&self) -> u32 {
+        self.first + self.rest.len() as u32
     }
 }
 
@@ -132,7 +139,7 @@ impl YarnTables {
             core_widening: core.half_width[1],
             ..Default::default()
         };
-        words.0.shrink_to_fit();
+        words.rest.shrink_to_fit();
         Self { words, kind }
     }
 }
@@ -175,7 +182,7 @@ pub(crate) struct TableBuffer {
 
 impl TableBuffer {
     pub fn add_yarn(&mut self, yarn: &YarnTables) {
-        let first = self.words.append_words(yarn.words.0.iter().copied());
+        let first = self.words.append_words(yarn.words.rest.iter().copied());
         let kind = &yarn.kind;
         self.yarns.push(layout::Yarn {
             fiber_table: first + kind.fiber_table,
@@ -204,8 +211,7 @@ impl TableBuffer {
         first
     }
 
-    pub fn add_material(&mut self, material: &Material) {
-        let tables = ScatteringTables::new(material);
+    pub fn add_material(&mut self, material: &Material, tables: &ScatteringTables) {
         let columns = [
             tables.root_integral_r,
             tables.root_integral_tt,
@@ -290,6 +296,8 @@ const LEAST_KEPT_PHOTONS: u32 = 50_000;
 #[derive(Default)]
 pub(crate) struct TableCache {
     yarns: Recent<(Yarn, u32), YarnTables>,
+    /// By what they hang on: widths of lobes.
+    scattering: Recent<[f64; 3], ScatteringTables>,
     transports: Recent<TransportKey, Transport>,
     pub store: Option<TransportStore>,
 }
@@ -304,10 +312,16 @@ impl TableCache {
         })
     }
 
+    pub fn scattering(&mut self, material: &Material) -> Arc<ScatteringTables> {
+        let key = [material.beta_r_rad, material.beta_tt_rad, material.gamma_tt_rad];
+        self.scattering.find(&key).unwrap_or_else(|| self.scattering.keep(key, ScatteringTables::new(material)))
+    }
+
     /// Keeps what was used last: as much as a scene of so many needs, and for whoever tries one after the other, or has several views, at least
     /// eight kinds of yarn, 25 MiB each, and 16 tables of multiple scattering, 1.5 MiB each, of which drafts have their own.
-    pub fn forget(&mut self, yarns: usize, transports: usize) {
+    pub fn forget(&mut self, yarns: usize, materials: usize, transports: usize) {
         self.yarns.forget(yarns.max(8));
+        self.scattering.forget(materials.max(16));
         self.transports.forget((2 * transports).max(16));
     }
 
@@ -405,7 +419,7 @@ mod tests {
         }
         for ((kind, tables), yarn) in buffer.yarns.iter().zip(&tables).zip(&yarns) {
             let core = &tables.core_fiber;
-            let words = &buffer.words.0;
+            let words = &buffer.words.rest;
             let word = |texel: usize| words[kind.core_heights as usize + texel];
             let stored = |texel: usize| word(texel) & 0xffff;
             let height = |texel: usize| f64::from(stored(texel) >> CORE_PLACE_BITS) / 2047.0 * 4.0 - 2.0;

@@ -72,6 +72,8 @@ pub(crate) struct SceneBuffers {
     uploads: Vec<Upload>,
     kinds: Vec<Arc<Yarn>>,
     table_resolution: u32,
+    /// Words of their tables, which come first.
+    yarn_words: u32,
     materials: Vec<Arc<Material>>,
     transports: Vec<UploadedTransport>,
     pub shape: Shape,
@@ -84,6 +86,8 @@ pub(crate) struct SceneBuffers {
     pub material_data: wgpu::Buffer,
     pub tables: WordTexture<u32>,
     pub uploaded_bytes: u64,
+    /// Differs between states of what is here; buffers that were made anew are others.
+    pub revision: u64,
 }
 
 /// A table of multiple scattering, the kind of yarn and the material that it is for, and its offset.
@@ -225,19 +229,32 @@ impl SceneBuffers {
         };
         let same_transports =
             buffers.transports.len() == wanted.len() && buffers.transports.iter().zip(&wanted).all(|(a, b)| same(a, b));
-        let same_tables = buffers.kinds == kinds && buffers.table_resolution == table_resolution;
-        if !same_tables || buffers.materials != materials || !same_transports {
+        let same_kinds = buffers.kinds == kinds && buffers.table_resolution == table_resolution;
+        if !same_kinds || buffers.materials != materials || !same_transports {
+            let mut add_light = |tables: &mut TableBuffer, cache: &mut TableCache| {
+                materials.iter().for_each(|material| tables.add_material(material, &cache.scattering(material)));
+                wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
+            };
             let mut tables = TableBuffer::default();
-            kinds.iter().for_each(|yarn| tables.add_yarn(&cache.yarn(yarn, table_resolution)));
-            materials.iter().for_each(|material| tables.add_material(material));
-            wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
+            tables.words.first = buffers.yarn_words;
+            add_light(&mut tables, cache);
+            if same_kinds && u64::from(tables.words.end()) <= buffers.tables.texels() {
+                // Tables of yarns are much larger, and stay.
+                buffers.tables.write(gpu, buffers.yarn_words, &tables.words.rest);
+            } else {
+                tables = TableBuffer::default();
+                kinds.iter().for_each(|yarn| tables.add_yarn(&cache.yarn(yarn, table_resolution)));
+                buffers.yarn_words = tables.words.end();
+                add_light(&mut tables, cache);
+                buffers.yarns = array(gpu, "yarn kinds", &tables.yarns)?;
+                buffers.tables = WordTexture::new(gpu, "tables of yarns and materials", &tables.words.rest)?;
+                buffers.revision += 1;
+            }
             buffers.transports = wanted;
-            buffers.yarns = array(gpu, "yarn kinds", &tables.yarns)?;
             buffers.material_data = array(gpu, "materials", &tables.materials)?;
-            buffers.tables = WordTexture::new(gpu, "tables of yarns and materials", &tables.words.0)?;
             (buffers.kinds, buffers.materials, buffers.table_resolution) = (kinds, materials, table_resolution);
         }
-        cache.forget(buffers.kinds.len(), transports.len());
+        cache.forget(buffers.kinds.len(), buffers.materials.len(), transports.len());
         for part in &mut parts {
             let transport = buffers.transports.iter().find(|t| (t.yarn, t.material) == (part.yarn, part.material));
             part.transport = transport.map_or(0, |transport| transport.offset);
@@ -268,6 +285,7 @@ impl SceneBuffers {
             uploads,
             kinds: Vec::new(),
             table_resolution: 0,
+            yarn_words: 0,
             materials: Vec::new(),
             transports: Vec::new(),
             shape: Shape { knots: WordTexture::writable(gpu, "control points", &moving_knots)?, places },
@@ -282,6 +300,7 @@ impl SceneBuffers {
                 + size_of_val(&rest_knots[..])
                 + size_of_val(&knot_curves[..])
                 + size_of_val(&curves[..])) as u64,
+            revision: 0,
         })
     }
 
@@ -293,6 +312,7 @@ impl SceneBuffers {
                 displaced || !Arc::ptr_eq(&upload.yarns, yarns) && !std::ptr::eq(upload.yarns.points(), yarns.points());
             upload.yarns = Arc::clone(yarns);
             if moved {
+                self.revision += 1;
                 let moving = upload.knots.moving(yarns.strands());
                 self.shape.knots.write(gpu, upload.first_knot, &moving.knots);
                 self.uploaded_bytes += size_of_val(&moving.knots[..]) as u64;

@@ -119,8 +119,13 @@ impl<T: Texel> WordTexture<T> {
         wgpu::BindingResource::TextureView(&self.view)
     }
 
+    /// How many there is room for.
+    pub fn texels(&self) -> u64 {
+        u64::from(self.texture.width()) * u64::from(self.texture.height())
+    }
+
     pub fn bytes(&self) -> u64 {
-        size_of::<T>() as u64 * u64::from(self.texture.width()) * u64::from(self.texture.height())
+        size_of::<T>() as u64 * self.texels()
     }
 }
 

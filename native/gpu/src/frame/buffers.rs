@@ -45,6 +45,13 @@ struct Capacity {
     mesh_targets: Option<TargetSizes>,
 }
 
+impl Capacity {
+    /// What shadow maps hang on: they stay where only the size of the picture is another.
+    fn shadows(&self) -> (u64, u32) {
+        (self.views, self.shadow_resolution)
+    }
+}
+
 impl FrameBuffers {
     /// Buffers for a picture: the kept ones if they fit.
     pub fn fit(
@@ -76,6 +83,11 @@ impl FrameBuffers {
             shadow_resolution,
             mesh_targets: has_meshes.then(|| TargetSizes { tile: most_of(&tiles), shadow: shadow_resolution }),
         };
+        let kept_depths = kept.as_ref().filter(|b| b.capacity.shadows() == capacity.shadows());
+        let shadow_depths = match kept_depths {
+            Some(buffers) => buffers.shadow_depths.clone(),
+            None => empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
+        };
         if let Some(buffers) = kept.filter(|b| b.capacity == capacity) {
             return Ok(buffers);
         }
@@ -105,7 +117,7 @@ impl FrameBuffers {
             draws: empty_array(gpu, "instances", capacity.draws * size_of::<layout::Draw>() as u64)?,
             lights: empty_array(gpu, "lights", capacity.lights * size_of::<layout::Light>() as u64)?,
             views: empty_array(gpu, "shadow views", capacity.views * size_of::<layout::ShadowView>() as u64)?,
-            shadow_depths: empty_storage(gpu, "shadow maps", capacity.views * 4 * u64::from(shadow_resolution).pow(2))?,
+            shadow_depths,
             uniform: uniform("frame", size_of::<layout::Frame>(), wgpu::BufferUsages::UNIFORM),
             pass_uniform: uniform("pass", 16, wgpu::BufferUsages::UNIFORM),
             aovs: empty_storage(gpu, "passes", 4 * capacity.planes * capacity.pixels)?,

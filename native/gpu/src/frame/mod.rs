@@ -2,23 +2,25 @@
 
 mod buffers;
 mod read_back;
+mod shadows;
 mod threads;
 mod tiles;
 
 pub(crate) use buffers::FrameBuffers;
+pub(crate) use shadows::DrawnShadows;
 
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
 
-use self::threads::{core_parts, fold, nearest_w, parts, parts_within};
+use self::threads::{core_parts, fold};
 use self::tiles::{TileLimits, tiles};
 use crate::aov::{FRAME_WORDS, Planes, VECTOR_WORDS};
 use crate::arrays::Arrays;
 use crate::device::Gpu;
 use crate::environment::SkyBuffers;
 use crate::layout::{self, NONE};
-use crate::lights::{self, Extent, LightSample};
+use crate::lights::{Extent, LightSample};
 use crate::mesh_raster::MeshPipelines;
 use crate::meshes::{MeshBuffers, MeshPlaces};
 use crate::motion::{Moment, Motion, Neighbour};
@@ -61,6 +63,8 @@ pub(crate) struct FrameInput<'a> {
     pub neighbours: Option<&'a [Neighbour; 2]>,
     pub sky: &'a SkyBuffers,
     pub meshes: &'a MeshBuffers,
+    /// If there are any.
+    pub mesh_pipelines: Option<&'a MeshPipelines>,
 }
 
 impl FrameInput<'_> {
@@ -105,7 +109,6 @@ pub(crate) type PictureListener = Listener<Result<Image, Error>>;
 pub(crate) struct Recorder<'a> {
     gpu: &'a Gpu,
     pipelines: &'a Pipelines,
-    mesh_pipelines: Option<&'a MeshPipelines>,
     listener: &'a PictureListener,
     input: &'a FrameInput<'a>,
     frame: &'a FrameBuffers,
@@ -113,8 +116,7 @@ pub(crate) struct Recorder<'a> {
     uniform: layout::Frame,
     filter: PixelFilter,
     timer: Timer,
-    /// Lights whose shadows are already drawn and stay.
-    static_lights: bool,
+    drawn_shadows: DrawnShadows,
     work: Work,
     /// What the sample sees.
     moment: Moment,
@@ -127,13 +129,13 @@ impl<'a> Recorder<'a> {
     pub fn new(
         gpu: &'a Gpu,
         pipelines: &'a Pipelines,
-        mesh_pipelines: Option<&'a MeshPipelines>,
         listener: &'a PictureListener,
         input: &'a FrameInput<'a>,
         frame: &'a FrameBuffers,
         moment: Moment,
+        kept_shadows: Option<DrawnShadows>,
     ) -> Result<Self, Error> {
-        let FrameInput { scene, settings, planes, .. } = input;
+        let FrameInput { scene, settings, planes, buffers, meshes, .. } = input;
         let draws = &moment.draws;
         if frame.views() > threads::MOST_LAYERS {
             let reason = format!("they have {} shadow maps, more than {}", frame.views(), threads::MOST_LAYERS);
@@ -151,10 +153,12 @@ impl<'a> Recorder<'a> {
             ));
         }
         let background = scene.ambient;
+        let mesh_places = meshes.place(scene, &moment.mesh_transforms, moment.view.origin);
+        let depths = &frame.shadow_depths;
+        let drawn_shadows = DrawnShadows::of(kept_shadows, depths, &meshes.positions, buffers, draws, &mesh_places);
         let mut recorder = Self {
             gpu,
             pipelines,
-            mesh_pipelines,
             listener,
             input,
             frame,
@@ -189,11 +193,11 @@ impl<'a> Recorder<'a> {
             },
             filter: PixelFilter::new(settings.filter, settings.filter_width),
             timer: Timer::new(gpu),
-            static_lights: false,
+            drawn_shadows,
             work: Work::default(),
             first_view: moment.view,
             moment,
-            mesh_places: MeshPlaces::new(),
+            mesh_places,
         };
         recorder.show();
         Ok(recorder)
@@ -221,6 +225,7 @@ impl<'a> Recorder<'a> {
     fn move_to(&mut self, time: f64) -> Result<(), Error> {
         let FrameInput { motion, buffers, meshes, .. } = *self.input;
         self.moment = motion.at(buffers, time)?;
+        self.drawn_shadows.forget();
         self.show();
         let (step, share) = motion.step(time);
         meshes.deform(self.gpu, step, share);
@@ -369,14 +374,10 @@ impl<'a> Recorder<'a> {
         self.uniform.viewer = seen.viewer;
 
         let extent = Extent::new(self.moment.draws.bounds, self.mesh_places.bounds);
-        let mut first_view_to_draw = 0;
         let mut meshes = self.meshes();
         if !extent.is_empty() {
             let resolution = self.frame.shadow_resolution();
             let mut lights = LightSample::new(&scene.lights, view.origin, extent, resolution, number, settings.seed);
-            if self.static_lights {
-                first_view_to_draw = lights.views.len() as u32;
-            }
             let sky_views = self.input.sky_views();
             (self.uniform.sky_view, self.uniform.sky_view_count) = (lights.views.len() as u32, sky_views);
             let first = number.wrapping_mul(sky_views);
@@ -397,14 +398,17 @@ impl<'a> Recorder<'a> {
             self.gpu.queue.write_buffer(&self.frame.views, 0, bytemuck::cast_slice(&lights.views));
             self.gpu.queue.write_buffer(&self.frame.meshes, 0, bytemuck::bytes_of(&meshes));
             self.write_uniform();
-            self.shadows(&lights.views[first_view_to_draw as usize..], first_view_to_draw);
-            self.static_lights = !motion.is_moving() && !scene.lights.iter().any(lights::is_soft);
+            self.shadows(&lights.views)?;
             self.listener.check()?;
         } else {
             self.write_uniform();
         }
         let cull = index == 0 || view.lens.is_some() || motion.is_moving();
-        self.visibility(cull, width, height);
+        self.visibility(cull);
+        // A software driver takes its time for either half, and the picture may be stopped between them.
+        self.gpu.finish()?;
+        self.listener.check()?;
+        self.resolve(width, height);
         if index == 0
             && let Some(neighbours) = self.input.neighbours
         {
@@ -422,6 +426,11 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
+    /// The shadow maps that another picture of the same may take.
+    pub fn into_shadows(self) -> Option<DrawnShadows> {
+        (!self.input.motion.is_moving()).then_some(self.drawn_shadows)
+    }
+
     /// What the passes of a sample know of all meshes.
     fn meshes(&self) -> layout::Meshes {
         let MeshPlaces { items, bounds, .. } = &self.mesh_places;
@@ -437,38 +446,8 @@ impl<'a> Recorder<'a> {
         self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("sample") })
     }
 
-    /// Depth maps of views, `first` being the number of the first.
-    fn shadows(&mut self, views: &[layout::ShadowView], first: u32) {
-        let count = views.len() as u32;
-        if count == 0 {
-            return;
-        }
-        let resolution = f64::from(self.frame.shadow_resolution());
-        let draws = &self.moment.draws;
-        let radius = |view: &layout::ShadowView| draws.radius_max * f64::from(view.texels_per_unit) / nearest_w(view);
-        let radius = views.iter().map(radius).fold(0.0, f64::max).min(resolution);
-        let parts = parts(draws.slenderness * radius, 2.0 * radius + 2.0, 8.0, 2.0 * resolution);
-        let parts = parts_within(parts, count);
-        self.gpu.queue.write_buffer(&self.frame.pass_uniform, 0, bytemuck::cast_slice(&[first, parts, 0, 0]));
-        let mut encoder = self.encoder();
-        let bytes = 4 * u64::from(self.frame.shadow_resolution()).pow(2);
-        encoder.clear_buffer(&self.frame.shadow_depths, bytes * u64::from(first), Some(bytes * u64::from(count)));
-        if self.uniform.segment_count > 0 {
-            let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
-            self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count * parts));
-        }
-        if let Some(pipelines) = self.mesh_pipelines.filter(|_| !self.input.meshes.is_empty()) {
-            let numbers = views.iter().enumerate().map(|(i, view)| (first + i as u32, view.side as u32));
-            let (bindings, triangles) = (self.bindings(), self.input.meshes.triangle_count());
-            let targets = &self.frame.mesh_targets;
-            pipelines.record_shadows(self.gpu, &mut encoder, &bindings, targets, numbers, triangles);
-        }
-        self.timer.resolve(&mut encoder);
-        self.gpu.submit(encoder);
-    }
-
-    /// Cull and scan if asked for, visibility, resolve.
-    fn visibility(&mut self, cull: bool, width: u32, height: u32) {
+    /// Cull and scan if asked for, visibility.
+    fn visibility(&mut self, cull: bool) {
         let mut encoder = self.encoder();
         if self.uniform.segment_count > 0 {
             if cull {
@@ -488,12 +467,18 @@ impl<'a> Recorder<'a> {
         } else {
             encoder.clear_buffer(&self.frame.keys, 0, None);
         }
-        let has_meshes = !self.input.meshes.is_empty();
-        if let Some(pipelines) = self.mesh_pipelines.filter(|_| has_meshes) {
+        if let Some(pipelines) = self.input.mesh_pipelines.filter(|_| !self.input.meshes.is_empty()) {
             let (bindings, triangles) = (self.bindings(), self.input.meshes.triangle_count());
             let (targets, size) = (&self.frame.mesh_targets, self.uniform.size);
             pipelines.record_visibility(self.gpu, &mut encoder, &bindings, targets, size, triangles);
         }
+        self.timer.resolve(&mut encoder);
+        self.gpu.submit(encoder);
+    }
+
+    /// What is seen gets its colour.
+    fn resolve(&mut self, width: u32, height: u32) {
+        let mut encoder = self.encoder();
         encoder.clear_buffer(&self.frame.resolve_dispatch, 0, None);
         let resolve = self.input.resolve;
         if resolve.film == Film::Aovs && self.uniform.first == 1 {
@@ -501,7 +486,7 @@ impl<'a> Recorder<'a> {
         }
         let (x, y) = fold((width * height).div_ceil(LANES));
         self.record(&mut encoder, Pass::Classify(self.input.background), |pass| pass.dispatch_workgroups(x, y, 1));
-        if has_meshes {
+        if !self.input.meshes.is_empty() {
             self.record(&mut encoder, Pass::ResolveMeshes(resolve), |pass| pass.dispatch_workgroups(x, y, 1));
         }
         if self.uniform.segment_count > 0 {
