@@ -20,6 +20,7 @@ mod noise;
 mod pipelines;
 mod renderer;
 mod scene;
+mod scene_tables;
 mod shader;
 mod tables;
 mod timing;

@@ -6,16 +6,14 @@ use std::sync::Arc;
 use bytemuck::Pod;
 use glam::{DMat4, DVec3, Vec4};
 use lisle_core::sampling::hash_combine;
-use lisle_core::scattering::Material;
 use lisle_core::strands::Yarns;
 use lisle_core::yarn::Yarn;
-use lisle_precompute::Transport;
 
-use crate::arrays::{array, empty_array};
 use crate::device::Gpu;
 use crate::knots::{MovingKnots, RestKnots};
 use crate::layout;
-use crate::tables::{SceneTransport, TableBuffer, TableCache, bound};
+use crate::scene_tables::{Kinds, SceneTables};
+use crate::tables::{SceneTransport, TableCache, bound};
 use crate::view::Bounds;
 use crate::word_texture::WordTexture;
 use crate::{Error, Object, Scene};
@@ -70,32 +68,16 @@ pub(crate) fn same_rest(a: &Yarns, b: &Yarns) -> bool {
 /// Buffers of the yarns, and what they hold.
 pub(crate) struct SceneBuffers {
     uploads: Vec<Upload>,
-    kinds: Vec<Arc<Yarn>>,
-    table_resolution: u32,
-    /// Words of their tables, which come first.
-    yarn_words: u32,
-    materials: Vec<Arc<Material>>,
-    transports: Vec<UploadedTransport>,
+    pub tables: SceneTables,
     pub shape: Shape,
     /// Whether the shape is none that was uploaded, but one between two.
     pub displaced: bool,
     pub rest_knots: WordTexture<[u32; 2]>,
     pub knot_curves: WordTexture<u32>,
     pub curves: wgpu::Buffer,
-    pub yarns: wgpu::Buffer,
-    pub material_data: wgpu::Buffer,
-    pub tables: WordTexture<u32>,
     pub uploaded_bytes: u64,
-    /// Differs between states of what is here; buffers that were made anew are others.
+    /// How often knots of these buffers have moved.
     pub revision: u64,
-}
-
-/// A table of multiple scattering, the kind of yarn and the material that it is for, and its offset.
-struct UploadedTransport {
-    table: Arc<Transport>,
-    yarn: u32,
-    material: u32,
-    offset: u32,
 }
 
 /// The instances to draw.
@@ -168,19 +150,15 @@ pub(crate) struct ObjectParts {
     transport: u32,
 }
 
-/// The distinct sets of a scene, and what each object is made of, yet without tables; `kinds` and `materials` take those that there are.
-fn distinct<'a>(
-    scene: &'a Scene,
-    kinds: &mut Vec<Arc<Yarn>>,
-    materials: &mut Vec<Arc<Material>>,
-) -> (Vec<Set<'a>>, Vec<ObjectParts>) {
+/// The distinct sets of a scene, and what each object is made of, yet without tables; `kinds` takes those that there are.
+fn distinct<'a>(scene: &'a Scene, kinds: &mut Kinds) -> (Vec<Set<'a>>, Vec<ObjectParts>) {
     let mut sets = Vec::new();
     let mut known = HashMap::<(*const Yarns, usize), usize>::new();
     let parts = scene
         .objects
         .iter()
         .map(|Object { yarns, yarn, material, .. }| {
-            let (kind, material) = (intern(kinds, yarn), intern(materials, material));
+            let (kind, material) = (intern(&mut kinds.yarns, yarn), intern(&mut kinds.materials, material));
             let set = *known.entry((Arc::as_ptr(yarns), kind)).or_insert_with(|| {
                 sets.push(Set { yarns, yarn });
                 sets.len() - 1
@@ -201,68 +179,30 @@ impl SceneBuffers {
         table_resolution: u32,
         cache: &mut TableCache,
     ) -> Result<(Self, Vec<ObjectParts>), Error> {
-        let (mut kinds, mut materials) = (Vec::new(), Vec::new());
-        let (sets, mut parts) = distinct(scene, &mut kinds, &mut materials);
-        let known = previous.filter(|p| {
+        let mut kinds = Kinds { yarns: Vec::new(), materials: Vec::new(), table_resolution };
+        let (sets, mut parts) = distinct(scene, &mut kinds);
+        let is_known = |p: &Self| {
             p.uploads.len() == sets.len()
                 && p.uploads.iter().zip(&sets).all(|(u, set)| same_rest(&u.yarns, set.yarns) && u.yarn == *set.yarn)
-        });
-        let mut buffers = match known {
-            Some(mut buffers) => {
+        };
+        let (yarns, materials) = (kinds.yarns.len(), kinds.materials.len());
+        let mut tables = |kept| SceneTables::update(gpu, kept, kinds.clone(), transports, cache);
+        let buffers = match previous {
+            Some(mut buffers) if is_known(&buffers) => {
                 buffers.uploaded_bytes = 0;
                 buffers.move_knots(gpu, &sets);
-                buffers
+                Self { tables: tables(Some(buffers.tables))?, ..buffers }
             }
-            None => Self::upload(gpu, &sets)?,
+            other => Self::upload(gpu, &sets, tables(other.map(|buffers| buffers.tables))?)?,
         };
-        let mut wanted: Vec<UploadedTransport> = transports
-            .iter()
-            .map(|SceneTransport { yarn, material, table }| UploadedTransport {
-                table: Arc::clone(table),
-                yarn: position(&kinds, yarn),
-                material: position(&materials, material),
-                offset: 0,
-            })
-            .collect();
-        let same = |a: &UploadedTransport, b: &UploadedTransport| {
-            (a.yarn, a.material) == (b.yarn, b.material) && Arc::ptr_eq(&a.table, &b.table)
-        };
-        let same_transports =
-            buffers.transports.len() == wanted.len() && buffers.transports.iter().zip(&wanted).all(|(a, b)| same(a, b));
-        let same_kinds = buffers.kinds == kinds && buffers.table_resolution == table_resolution;
-        if !same_kinds || buffers.materials != materials || !same_transports {
-            let mut add_light = |tables: &mut TableBuffer, cache: &mut TableCache| {
-                materials.iter().for_each(|material| tables.add_material(material, &cache.scattering(material)));
-                wanted.iter_mut().for_each(|transport| transport.offset = tables.add_transport(&transport.table));
-            };
-            let mut tables = TableBuffer::default();
-            tables.words.first = buffers.yarn_words;
-            add_light(&mut tables, cache);
-            if same_kinds && u64::from(tables.words.end()) <= buffers.tables.texels() {
-                // Tables of yarns are much larger, and stay.
-                buffers.tables.write(gpu, buffers.yarn_words, &tables.words.rest);
-            } else {
-                tables = TableBuffer::default();
-                kinds.iter().for_each(|yarn| tables.add_yarn(&cache.yarn(yarn, table_resolution)));
-                buffers.yarn_words = tables.words.end();
-                add_light(&mut tables, cache);
-                buffers.yarns = array(gpu, "yarn kinds", &tables.yarns)?;
-                buffers.tables = WordTexture::new(gpu, "tables of yarns and materials", &tables.words.rest)?;
-                buffers.revision += 1;
-            }
-            buffers.transports = wanted;
-            buffers.material_data = array(gpu, "materials", &tables.materials)?;
-            (buffers.kinds, buffers.materials, buffers.table_resolution) = (kinds, materials, table_resolution);
-        }
-        cache.forget(buffers.kinds.len(), buffers.materials.len(), transports.len());
+        cache.forget(yarns, materials, transports.len());
         for part in &mut parts {
-            let transport = buffers.transports.iter().find(|t| (t.yarn, t.material) == (part.yarn, part.material));
-            part.transport = transport.map_or(0, |transport| transport.offset);
+            part.transport = buffers.tables.transport(part.yarn, part.material);
         }
         Ok((buffers, parts))
     }
 
-    fn upload(gpu: &Gpu, sets: &[Set]) -> Result<Self, Error> {
+    fn upload(gpu: &Gpu, sets: &[Set], tables: SceneTables) -> Result<Self, Error> {
         let mut first_knot = 0_u32;
         let (mut rest_knots, mut knot_curves, mut curves) = (Vec::new(), Vec::new(), Vec::new());
         let (mut moving_knots, mut places) = (Vec::new(), Vec::new());
@@ -283,19 +223,12 @@ impl SceneBuffers {
         }
         Ok(Self {
             uploads,
-            kinds: Vec::new(),
-            table_resolution: 0,
-            yarn_words: 0,
-            materials: Vec::new(),
-            transports: Vec::new(),
+            tables,
             shape: Shape { knots: WordTexture::writable(gpu, "control points", &moving_knots)?, places },
             displaced: false,
             rest_knots: WordTexture::new(gpu, "control points (lengths and radii)", &rest_knots)?,
             knot_curves: WordTexture::new(gpu, "control points (curves)", &knot_curves)?,
             curves: storage(gpu, "curves", &curves)?,
-            yarns: empty_array(gpu, "yarn kinds", 0)?,
-            material_data: empty_array(gpu, "materials", 0)?,
-            tables: WordTexture::new(gpu, "tables", &[])?,
             uploaded_bytes: (size_of_val(&moving_knots[..])
                 + size_of_val(&rest_knots[..])
                 + size_of_val(&knot_curves[..])
@@ -346,10 +279,6 @@ impl SceneBuffers {
 
     pub fn knot_bytes(&self) -> u64 {
         self.shape.knots.bytes() + self.rest_knots.bytes() + self.knot_curves.bytes() + self.curves.size()
-    }
-
-    pub fn table_bytes(&self) -> u64 {
-        self.yarns.size() + self.material_data.size() + self.tables.bytes()
     }
 
     /// The scene's objects as draws of these buffers, with such transforms to the world and places of the sets; `parts` are what
@@ -408,9 +337,4 @@ impl SceneBuffers {
         }
         Ok(draws)
     }
-}
-
-fn position<T: PartialEq>(list: &[Arc<T>], item: &Arc<T>) -> u32 {
-    let found = list.iter().position(|known| Arc::ptr_eq(known, item) || **known == **item);
-    found.expect("every object's yarn and material was interned") as u32
 }

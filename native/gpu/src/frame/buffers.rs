@@ -140,7 +140,7 @@ impl FrameBuffers {
 
     /// Where shaders find what the scene has few of.
     pub fn arrays(&self, gpu: &Gpu, scene: &SceneBuffers) -> Arrays {
-        Arrays::of(gpu, &[&self.draws, &self.lights, &self.views, &scene.yarns, &scene.material_data])
+        Arrays::of(gpu, &[&self.draws, &self.lights, &self.views, &scene.tables.yarns, &scene.tables.materials])
     }
 
     pub(super) fn bytes(&self) -> u64 {

@@ -250,8 +250,8 @@ impl<'a> Recorder<'a> {
             (0, &frame.uniform),
             (1, &frame.draws),
             (2, &scene.curves),
-            (6, &scene.yarns),
-            (7, &scene.material_data),
+            (6, &scene.tables.yarns),
+            (7, &scene.tables.materials),
             (9, &frame.lights),
             (10, &frame.views),
             (11, &frame.shadow_depths),
@@ -280,7 +280,7 @@ impl<'a> Recorder<'a> {
             (3, scene.shape.knots.binding()),
             (4, scene.rest_knots.binding()),
             (5, scene.knot_curves.binding()),
-            (8, scene.tables.binding()),
+            (8, scene.tables.words.binding()),
             (37, wgpu::BindingResource::TextureView(&frame.mesh_targets.seen)),
         ]);
         bindings
@@ -335,7 +335,7 @@ impl<'a> Recorder<'a> {
             fiber_lines: self.work.fiber_lines,
             knot_bytes: self.input.buffers.knot_bytes() + self.frame.segment_work.size(),
             gpu_bytes: self.input.buffers.knot_bytes()
-                + self.input.buffers.table_bytes()
+                + self.input.buffers.tables.bytes()
                 + self.input.sky.bytes()
                 + self.input.meshes.bytes()
                 + self.frame.bytes(),

@@ -19,6 +19,7 @@ struct Casters {
     depths: wgpu::Buffer,
     curves: wgpu::Buffer,
     revision: u64,
+    yarns: wgpu::Buffer,
     mesh_positions: wgpu::Buffer,
     /// Instances of yarns and of meshes.
     items: [Vec<u8>; 2],
@@ -44,6 +45,7 @@ impl DrawnShadows {
             depths: depths.clone(),
             curves: buffers.curves.clone(),
             revision: buffers.revision,
+            yarns: buffers.tables.yarns.clone(),
             mesh_positions: mesh_positions.clone(),
             items: [bytemuck::cast_slice(&draws.items).to_vec(), bytemuck::cast_slice(&meshes.items).to_vec()],
         };
