@@ -224,8 +224,10 @@ class Painter:
         draw = self._timed(view, task)
         width, height = task.region[2] - task.region[0], task.region[3] - task.region[1]
         share = (view.draft_pixels / (width * height)) ** 0.5
-        if share < 0.8:
+        has_draft = share < 0.8
+        if has_draft:
             yield from self._draft(view, task, draw, share)
+        first_s = 0.0
         combined = depth = None
         done = 0
         while done < task.samples:
@@ -240,6 +242,7 @@ class Painter:
                 drawn = draw(task.size, region, count, done, OTHER_SAMPLES if done else FIRST_SAMPLE)
                 if drawn is not None:
                     strip, strip_depth, seconds = drawn
+                    first_s += 0.0 if done else seconds
                     fresh[low : low + rows] = strip[::-1]
                     fresh_depth[low : low + rows] = strip_depth[::-1]
                     speed = max(CALL_S, 2 * view.draft_s) * count / seconds
@@ -249,6 +252,8 @@ class Painter:
                 yield
             if combined is None:
                 combined, depth = fresh, fresh_depth
+                if not has_draft:  # it was as good as one: what is too slow now gets one next time
+                    view.draft_pixels = _adapted(width * height, CALL_S / first_s, _LEAST_DRAFT_PIXELS)
             else:
                 fresh -= combined
                 fresh *= count / (done + count)

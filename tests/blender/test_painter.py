@@ -101,6 +101,19 @@ def test_the_draft_comes_first_and_covers_the_region(painter):
     assert painter.picture("a").samples == 8 and painter.news() == []
 
 
+def test_drafts_go_where_they_are_not_needed_and_come_back(painter):
+    def has_draft(scene, key):
+        scene.calls.clear()
+        painter.show("a", scene.task(key, samples=1))
+        finished(painter, "a")
+        return scene.calls[0][0] != SIZE
+
+    quick, slow = Scene(), Scene(0.25)
+    assert has_draft(quick, 0)
+    assert not any([has_draft(quick, key) for key in range(1, 9)][-3:])
+    assert [has_draft(slow, key) for key in (10, 11, 12)] == [False, True, True]
+
+
 def test_a_view_is_never_shown_with_another_views_picture(painter):
     scene = Scene(0.002)
     random = np.random.default_rng(0)

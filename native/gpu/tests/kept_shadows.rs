@@ -40,6 +40,8 @@ fn screen(angle_rad: f64) -> Mesh {
     }
 }
 
+type Change<'a> = &'a dyn Fn(&mut Scene);
+
 /// How often a picture handed work to the adapter. It is the one that another renderer draws.
 fn submissions(renderer: &Renderer, name: &str, scene: &Scene, settings: &Settings) -> u64 {
     let before = renderer.submissions();
@@ -70,14 +72,14 @@ fn maps_are_drawn_again_only_where_they_would_differ() {
     assert_eq!(submissions(&renderer, "another colour", &painted, &settings), none);
 
     // Each beside the one before it, so that what it was is not what it is.
-    let changed = |change: &dyn Fn(&mut Scene)| {
+    let changed = |change: Change| {
         let mut scene = first.clone();
         change(&mut scene);
         scene
     };
     let bent: Vec<[f32; 3]> = yarns.rest_points().iter().map(|p| [p[0], p[1] + 0.3 * p[0].sin(), p[2]]).collect();
     let bent = Arc::new(yarns.with_points(&bent).expect("as many points"));
-    let changes: [(&str, &dyn Fn(&mut Scene)); 8] = [
+    let changes: [(&str, Change); 8] = [
         ("moved points", &|scene| scene.objects[0].yarns = Arc::clone(&bent)),
         ("another transform", &|scene| scene.objects[0].world_from_object = DMat4::from_rotation_z(0.3)),
         ("another radius", &|scene| scene.objects[0].yarns = cloth(0.05)),
