@@ -9,15 +9,17 @@ mod density;
 #[cfg(test)]
 mod explicit;
 mod occlusion;
+mod ply_view;
 mod profile;
 mod self_shadow;
 mod tables;
 mod transport;
 
 pub use arrangement::TURNS;
-pub use core_fiber::{CoreFiber, HOLE};
+pub use core_fiber::CoreFiber;
 pub use density::SectionDensity;
 pub use occlusion::Occlusion;
+pub use ply_view::HOLE;
 pub use self_shadow::{HALF_WAY, SeenFrom, SelfShadow};
 pub use tables::Tables;
 pub use transport::{Transport, TransportSize, TransportStore};

@@ -162,12 +162,13 @@ fn variate(v: super::Variate, hash: u32, key: u32) -> f64 {
 }
 
 /// What a fiber is in the period with that hash.
-fn period_type(yarn: &Yarn, index: u32, hash: u32) -> FiberType {
-    if index >= yarn.flyaway_fibers() {
-        return FiberType::Migration;
-    }
+pub fn period_type(yarn: &Yarn, index: u32, hash: u32) -> FiberType {
+    if index >= yarn.flyaway_fibers() { FiberType::Migration } else { flyaway_type(yarn, unit_from_hash(hash)) }
+}
+
+/// What one that may fly away is in a period, by a number that is even in [0, 1).
+pub fn flyaway_type(yarn: &Yarn, choice: f64) -> FiberType {
     let (loop_chance, hair_chance) = yarn.flyaway_chances();
-    let choice = unit_from_hash(hash);
     if choice < loop_chance {
         FiberType::Loop
     } else if choice < loop_chance + hair_chance {

@@ -9,7 +9,7 @@ mod table;
 pub use curve::{Knot, Segment, YarnPoint};
 pub use fiber::{
     Break, Fiber, FiberPoint, FiberProfile, FiberType, HAIR_WIDTH, PlyPoint, Twist, breaks, fiber_point, fiber_profile,
-    fiber_seed, ply_point,
+    fiber_seed, flyaway_type, period_type, ply_point,
 };
 pub use parameters::{Flyaways, Variate, Yarn, YarnError};
 pub use presets::PRESET_NAMES;
