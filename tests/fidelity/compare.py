@@ -66,7 +66,6 @@ class Result:
     case: Case
     single: Pair
     multiple: Pair
-    """Of the middle, `models.PART` pixels square."""
     coverage: float
     """Mean coverage against the reference's, relative difference."""
     detail: float
@@ -123,13 +122,10 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
         return renderer.render(scene(), samples=samples // 2, **{"transport_photons": 0, **options})
 
     rendered = [draw(seed=seed) for seed in (0, 1)]
-    pixels = models.VIEWS[case.view][1]
-    low, high = (pixels - models.PART) // 2, (pixels + models.PART) // 2
-    part = (low, low, high, high)
-    all_orders = [draw(seed=seed, transport_photons=500_000, region=part) for seed in (0, 1)]
+    all_orders = [draw(seed=seed, transport_photons=500_000) for seed in (0, 1)]
     full = colour(draw(lod_pixels=0))
     single = lisle.Reference().render(scene(), bounces=1, samples=models.REFERENCE_SAMPLES[case.view] * samples)
-    multiple = lisle.Reference().render(scene(), samples=samples, seed=1, region=part)
+    multiple = lisle.Reference().render(scene(), samples=samples, seed=1)
     alpha = 0.5 * sum(float(image["alpha"].mean(dtype=np.float64)) for image in rendered)
     expected = colour(single)
 

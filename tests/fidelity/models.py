@@ -19,9 +19,6 @@ VIEWS = {"near": (6.0, 96), "middle": (24.0, 96), "far": (40.0, 48)}
 REFERENCE_SAMPLES = {"near": 1, "middle": 1, "far": 16}
 """Times as many samples by the reference: few pixels, each of many fibers, are noisy."""
 
-PART = 48
-"""Side of the middle of a picture in which light of all orders is compared, pixels: it takes many more samples."""
-
 SUNS = {"front": (0.3, -0.4, -1.0), "back": (0.2, -0.4, 1.0), "grazing": (1.0, -0.2, -0.15)}
 """Directions in which light travels, along the picture's right, its top, and towards the camera."""
 
