@@ -1,6 +1,6 @@
 use std::f64::consts::TAU;
 
-use glam::{DVec2, DVec4};
+use glam::{DVec2, DVec3};
 use lisle_core::sampling::hash_combine;
 use lisle_core::yarn::{FiberProfile, FiberTable, FiberType, Yarn, fiber_profile, flyaway_type, period_type};
 use rayon::prelude::*;
@@ -47,8 +47,8 @@ struct Period {
     kind: FiberType,
     /// Radius that it goes out to.
     reach: f64,
-    /// How much of it is outside of the ply, and how much of that is seen: beyond either edge, and in front.
-    outside: DVec4,
+    /// How much of it is outside of the ply, and how much of that towards either axis of the section.
+    outside: DVec3,
 }
 
 impl<'a> Arrangement<'a> {
@@ -68,8 +68,8 @@ impl<'a> Arrangement<'a> {
                 of
             })
             .collect();
-        let usual = |of: &[Period]| of.iter().map(|period| period.outside).sum::<DVec4>() / f64::from(CHOICES);
-        let usual: Vec<DVec4> = choices.iter().map(|of| usual(of)).collect();
+        let usual = |of: &[Period]| of.iter().map(|period| period.outside).sum::<DVec3>() / f64::from(CHOICES);
+        let usual: Vec<DVec3> = choices.iter().map(|of| usual(of)).collect();
         let group = |place: u32| place as usize * GROUPS / places as usize;
         let mut order: Vec<u32> = (0..places).collect();
         order.sort_by(|a, b| group(*a).cmp(&group(*b)).then(any.side(*a).total_cmp(&any.side(*b))));
@@ -86,7 +86,7 @@ impl<'a> Arrangement<'a> {
         let strangeness = |chosen: &[Period]| -> f64 {
             let of_inner = |first: usize| {
                 let inner = || (0..places).filter(|place| group(*place) >= first).map(|place| place as usize);
-                let off: DVec4 = inner().map(|k| chosen[k].outside - usual[k]).sum();
+                let off: DVec3 = inner().map(|k| chosen[k].outside - usual[k]).sum();
                 off.length_squared() / inner().map(|k| usual[k].x).sum::<f64>().powi(2).max(f64::MIN_POSITIVE)
             };
             (0..GROUPS).map(of_inner).sum()
@@ -99,15 +99,14 @@ impl<'a> Arrangement<'a> {
     /// One period with one choice.
     fn period(&self, place: u32, choice: u32) -> Period {
         let fiber = self.fiber_of(place);
-        let (mut reach, mut outside) = (0.0_f64, DVec4::ZERO);
+        let (mut reach, mut outside) = (0.0_f64, DVec3::ZERO);
         for k in 0..PHASES {
             let phase = (k as f64 + 0.5) / PHASES as f64;
             let at = self.profile_at(fiber, place, phase, choice);
             let astray = self.yarn.fiber_twist.signum() * at.angle_turns;
             let side = DVec2::from_angle(TAU * (self.turns(place, phase) + astray));
             reach = reach.max(at.radius);
-            let [all, left, right] = [at.radius, -at.radius * side.y, at.radius * side.y].map(self::outside);
-            outside += at.taper * DVec4::new(all, left, right, all * side.x.max(0.0));
+            outside += at.taper * self::outside(at.radius) * DVec3::new(1.0, side.x, side.y);
         }
         let kind = period_type(self.yarn, fiber as u32, self.hash(place, choice));
         Period { choice, kind, reach, outside }
