@@ -119,11 +119,15 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
         return models.scene(yarns, yarn, material, case.view, case.light)
 
     def draw(**options: Any) -> lisle.Image:
-        return renderer.render(scene(), samples=samples // 2, **{"transport_photons": 0, **options})
+        return renderer.render(scene(), **{"samples": samples // 2, "transport_photons": 0, **options})
 
-    rendered = [draw(seed=seed) for seed in (0, 1)]
+    def twice(**options: Any) -> list[lisle.Image]:
+        many = models.RENDERER_SAMPLES[case.view] * samples // 2
+        return [draw(seed=seed, samples=many, **options) for seed in (0, 1)]
+
+    rendered = twice()
     all_orders = [draw(seed=seed, transport_photons=500_000) for seed in (0, 1)]
-    full = colour(draw(lod_pixels=0))
+    full = sum(colour(image) for image in twice(lod_pixels=0)) / 2
     single = lisle.Reference().render(scene(), bounces=1, samples=models.REFERENCE_SAMPLES[case.view] * samples)
     multiple = lisle.Reference().render(scene(), samples=samples, seed=1)
     alpha = 0.5 * sum(float(image["alpha"].mean(dtype=np.float64)) for image in rendered)
@@ -139,7 +143,7 @@ def compare(renderer: lisle.Renderer, case: Case, yarns: lisle.Yarns, samples: i
         once,
         pair(all_orders, multiple),
         alpha / float(single["alpha"].mean(dtype=np.float64)) - 1,
-        measures.mean_error(colour(rendered[0]), full),
+        measures.mean_error(sum(colour(image) for image in rendered) / 2, full),
         measures.mean_error(full, expected),
         measures.flip(full, expected, once.covered)[0],
         error(table_resolution=4),
