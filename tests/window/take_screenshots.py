@@ -19,7 +19,7 @@ for obj in list(bpy.data.objects):
     bpy.data.objects.remove(obj)
 scene = bpy.context.scene
 scene.render.engine = 'LISLE'
-scene.lisle.viewport_samples = 16
+scene.lisle.viewport_samples = 64
 scene.render.film_transparent = False
 world = scene.world = bpy.data.worlds.new('World')
 world.node_tree.nodes['Background'].inputs['Color'].default_value = (0.25, 0.27, 0.3, 1)
@@ -36,7 +36,7 @@ operator(bpy.ops.screen.area_move, x=areas()[0].x + areas()[0].width, y=areas()[
 view = space()
 view.clip_start = 0.001
 view.overlay.show_floor = view.overlay.show_axis_x = view.overlay.show_axis_y = view.overlay.show_cursor = False
-operator(bpy.ops.lisle.add_knit_swatch, pattern='rib-2-2', courses=16, wales=20, yarn='cotton-1', fiber='cotton-2')
+operator(bpy.ops.lisle.add_knit_swatch, pattern='rib-2-2', courses=16, wales=20, yarn='cotton-1', fiber='fleece')
 bpy.context.active_object.select_set(False)
 """
 
