@@ -31,14 +31,15 @@ camera.location, camera.rotation_euler = (0, -0.25, 0.03), (1.45, 0, 0)
 scene.collection.objects.link(camera)
 scene.camera = camera
 properties = next(a for a in bpy.context.window_manager.windows[0].screen.areas if a.type == 'PROPERTIES')
-# A wider column of panels, so that their labels can be read.
-operator(bpy.ops.screen.area_move, x=areas()[0].x + areas()[0].width, y=areas()[0].y + 200, delta=-130)
 view = space()
 view.clip_start = 0.001
 view.overlay.show_floor = view.overlay.show_axis_x = view.overlay.show_axis_y = view.overlay.show_cursor = False
 operator(bpy.ops.lisle.add_knit_swatch, pattern='rib-2-2', courses=16, wales=20, yarn='cotton-1', fiber='fleece')
 bpy.context.active_object.select_set(False)
 """
+
+WIDER_PANELS = "operator(bpy.ops.screen.area_move, x=areas()[0].x + areas()[0].width, y=areas()[0].y + 200, delta=-130)"
+"""So that their labels can be read."""
 
 PICTURES = {
     "blender-rendered": """
@@ -92,6 +93,12 @@ def main():
         display = window.Display(folder / "pixels", SIZE)
         opened = window.Window(blender, display, blend, folder / "commands", "opengl")
         try:
+            # Borders move where no region has the pointer.
+            opened.do(
+                "window = bpy.context.window_manager.windows[0]; window.cursor_warp(areas()[0].x + areas()[0].width, 400)"
+            )
+            time.sleep(1)
+            opened.do(WIDER_PANELS)
             opened.do(SCENE)
             opened.do("bpy.context.window_manager.windows[0].cursor_warp(2, 2)")
             for name, code in PICTURES.items():
