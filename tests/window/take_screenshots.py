@@ -94,9 +94,7 @@ def main():
         opened = window.Window(blender, display, blend, folder / "commands", "opengl")
         try:
             # Borders move where no region has the pointer.
-            opened.do(
-                "window = bpy.context.window_manager.windows[0]; window.cursor_warp(areas()[0].x + areas()[0].width, 400)"
-            )
+            opened.do("x = areas()[0].x + areas()[0].width; bpy.context.window_manager.windows[0].cursor_warp(x, 400)")
             time.sleep(1)
             opened.do(WIDER_PANELS)
             opened.do(SCENE)
