@@ -96,7 +96,7 @@ fn turns_at(length: u32, whole: u32, rest: f32) -> Turns {
     return Turns(multiply_high(length, whole) + u32(carry), sum - carry);
 }
 
-// Whole turns matter to textures of several turns alone; few, so that the fraction stays exact: TURNS of native/precompute/src/core_fiber.rs.
+// Whole turns matter to textures of several turns alone; few, so that the fraction stays exact: TURNS of native/precompute/src/arrangement.rs.
 const TURNS_KEPT: u32 = 4u;
 
 fn turns_kept(turns: Turns) -> f32 {

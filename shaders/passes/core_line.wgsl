@@ -68,7 +68,7 @@ fn core_chance(pixel: vec2u) -> CoreChance {
     return CoreChance(unit_from_hash(hash_combine(hash, 2u)), unit_from_hash(hash_combine(hash, 1u)), unit_from_hash(hash));
 }
 
-// HOLE of native/precompute/src/core_fiber.rs: the height where there is no fiber.
+// HOLE of native/precompute/src/ply_view.rs: the height where there is no fiber.
 const CORE_HOLE: f32 = -2.0;
 
 // What visibility wants of a texel: the height, and where its fiber is in the layer's order, packed by native/gpu/src/tables.rs.

@@ -237,7 +237,7 @@ impl Drawing {
             neighbours,
             sky: &sky,
             meshes: &meshes,
-            mesh_pipelines: mesh_pipelines.as_ref(),
+            mesh_pipelines: mesh_pipelines.as_ref().filter(|_| !meshes.is_empty()),
         };
         let frame = FrameBuffers::fit(gpu, self.frame.take(), &input, &moment.draws, region)?;
         let arrays = frame.arrays(gpu, &buffers);

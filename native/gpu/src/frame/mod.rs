@@ -63,7 +63,7 @@ pub(crate) struct FrameInput<'a> {
     pub neighbours: Option<&'a [Neighbour; 2]>,
     pub sky: &'a SkyBuffers,
     pub meshes: &'a MeshBuffers,
-    /// If there are any.
+    /// If there are meshes.
     pub mesh_pipelines: Option<&'a MeshPipelines>,
 }
 
@@ -467,7 +467,7 @@ impl<'a> Recorder<'a> {
         } else {
             encoder.clear_buffer(&self.frame.keys, 0, None);
         }
-        if let Some(pipelines) = self.input.mesh_pipelines.filter(|_| !self.input.meshes.is_empty()) {
+        if let Some(pipelines) = self.input.mesh_pipelines {
             let (bindings, triangles) = (self.bindings(), self.input.meshes.triangle_count());
             let (targets, size) = (&self.frame.mesh_targets, self.uniform.size);
             pipelines.record_visibility(self.gpu, &mut encoder, &bindings, targets, size, triangles);

@@ -110,7 +110,7 @@ impl Recorder<'_> {
             let (x, y) = fold(self.uniform.segment_count.div_ceil(LANES));
             self.record(&mut encoder, Pass::Shadow, |pass| pass.dispatch_workgroups(x, y, count * parts));
         }
-        if let Some(pipelines) = self.input.mesh_pipelines.filter(|_| !self.input.meshes.is_empty()) {
+        if let Some(pipelines) = self.input.mesh_pipelines {
             let numbers = views.iter().enumerate().map(|(i, view)| (first + i as u32, view.side as u32));
             let (bindings, triangles) = (self.bindings(), self.input.meshes.triangle_count());
             let targets = &self.frame.mesh_targets;
