@@ -3,9 +3,9 @@
 
 @group(0) @binding(21) var<storage, read> resolve_dispatch: array<u32, 8>;
 
-// The drawn chord lies beside the curve by up to a quarter of a pixel: by the width of a thin fiber, whose offsets would all be
-// beyond its edge. There the pixel's offset is measured from the chord, and what second derivatives leave of the difference folded
-// back, where every offset is as likely. A thicker fiber is its own measure.
+// The drawn chord lies beside the curve by up to a quarter of a pixel, and always on the side that the curve bends to. Offsets are measured from it, by its
+// second derivatives: from the curve, more of them would be on that side, and fibers as wide as a pixel up to a tenth too dark under light from another. Of a
+// fiber thinner than a quarter of a pixel, what is left of the difference may be more than its width, and is folded back, where every offset is as likely.
 fn is_thin(radius_pixels: f32) -> bool {
     return radius_pixels < CHORD_ERROR;
 }
@@ -29,10 +29,7 @@ fn fiber_surface(s: Segment, yarn: Yarn, ply: u32, rank: u32, parts: KeyParts, p
     let scale = scale_of(yarn, s);
     let width = width_factor(yarn, share_at(scale, t), rank, f.taper);
     let radius_pixels = max(pixels_at(f.position, yarn.fiber_radius * p.radius * width), 1e-20);
-    var beside = vec3f(0.0);
-    if is_thin(radius_pixels) {
-        beside = to_chord(f, t, line_about(yarn, s, segment_rates(yarn, s), fiber, scale.radius_pixels, t));
-    }
+    let beside = to_chord(f, t, line_about(yarn, s, segment_rates(yarn, s), fiber, scale.radius_pixels, t));
     let at = to_pixel(frame.pixel_from_render, f.position + beside);
     // The pixel relative to the fiber on the screen: along it, what is left of the place's rounding; across it, the offset.
     let moved = (frame.pixel_from_render * vec4f(f.velocity, 0.0)).xyz;
