@@ -13,7 +13,7 @@ use lisle_core::scattering::{
 use lisle_gpu::{
     Camera, Cone, Image, Labels, Light, Mesh, MeshKind, Object, Occlusion, Scene, Settings, Shading, Triangles,
 };
-use lisle_precompute::{SectionDensity, SelfShadow};
+use lisle_precompute::{Bundle, SectionDensity, SelfShadow};
 use support::fiber::{close_up, lone_fiber, straight_fiber};
 use support::{curves, draw, exact, looking, measure, object, orthographic, picture, preset, scene, yarns_of};
 
@@ -443,7 +443,7 @@ fn a_yarn_takes_as_much_light_as_its_fibers() {
         };
         let taken = 1.0 - lit(vec![across]) / lit(vec![]);
         // Rays through the section from all sides, by the table that rays through explicit fibers are compared with.
-        let table = SelfShadow::new(&SectionDensity::new(&yarn), 1);
+        let table = SelfShadow::new(&Bundle::of(&yarn), &SectionDensity::new(&yarn), 1);
         let rays = || {
             (0..64 * 200).map(|k| {
                 let (psi, y) = (TAU * f64::from(k / 200) / 64.0, 0.0125 * (f64::from(k % 200) + 0.5) - 1.25);

@@ -19,7 +19,7 @@ const MANY_PERIODS: f64 = 4000.0;
 const GROUPS: usize = 3;
 
 /// Steps of a sequence that fills the unit square evenly: powers of the reciprocal of the root of x³ = x + 1.
-const EVEN_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+pub(crate) const EVEN_STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
 
 /// Sequences that one is chosen from.
 const STARTS: usize = 128;

@@ -113,7 +113,7 @@ mod tests {
     }
 
     fn explicit_shares(yarn: &Yarn) -> [f64; RINGS] {
-        let (dealer, mut random) = (Sections::new(yarn), Random::new(1));
+        let (dealer, mut random) = (Sections::of_kind(yarn), Random::new(1));
         let mut shares = [0.0; RINGS];
         let sections = 400_000 / (yarn.plies * yarn.fibers_per_ply);
         for _ in 0..sections {

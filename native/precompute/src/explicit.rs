@@ -45,42 +45,53 @@ pub fn extreme_yarns() -> [Yarn; 4] {
 pub struct SectionFiber {
     pub center: DVec2,
     pub tangent: DVec3,
+    /// Factor on the radius.
+    pub width: f64,
 }
 
 impl SectionFiber {
-    /// Distance of the point from the fiber's axis (its tangent line).
-    pub fn distance(&self, q: DVec2) -> f64 {
-        (q - self.center).extend(0.0).cross(self.tangent).length()
+    /// Whether the point lies in the fiber's tangent cylinder, whose radius where the fiber does not thin out is that.
+    pub fn holds(&self, q: DVec2, radius: f64) -> bool {
+        (q - self.center).extend(0.0).cross(self.tangent).length() < radius * self.width
     }
 
-    /// Whether a ray in the section from q meets the fiber's tangent cylinder of that radius ahead of q.
+    /// Whether a ray in the section from q meets the same cylinder ahead of q.
     pub fn blocks(&self, q: DVec2, direction: DVec2, radius: f64) -> bool {
         let (w, d) = ((self.center - q).extend(0.0), direction.extend(0.0));
         let normal = d.cross(self.tangent);
         // Where the ray is nearest to the axis: w − l d + s t is perpendicular to both.
         let ahead = w.cross(self.tangent).dot(normal) > 0.0;
-        ahead && w.dot(normal).abs() < radius * normal.length()
+        ahead && w.dot(normal).abs() < radius * self.width * normal.length()
     }
 }
 
-/// A pool of drawn fibers, from which independent plies are dealt.
+/// Random sections of yarns.
 pub struct Sections {
     yarn: Yarn,
     twist: Twist,
-    pool: FiberTable,
+    /// What every ply has, or where its fibers are dealt from.
+    table: FiberTable,
+    is_dealt: bool,
 }
 
 impl Sections {
     const DECKS: u32 = 1000;
 
-    pub fn new(yarn: &Yarn) -> Self {
+    /// Of a yarn: its plies have the same fibers everywhere.
+    pub fn of(yarn: &Yarn) -> Self {
+        let twist = Twist::new(yarn, 1000.0, 1.0, false);
+        Self { yarn: yarn.clone(), twist, table: FiberTable::new(yarn), is_dealt: false }
+    }
+
+    /// Of many yarns of that kind: the fibers of each ply are independent.
+    pub fn of_kind(yarn: &Yarn) -> Self {
         let many = Yarn { fibers_per_ply: yarn.fibers_per_ply * Self::DECKS, ..yarn.clone() };
-        Self { yarn: yarn.clone(), twist: Twist::new(yarn, 1000.0, 1.0, false), pool: FiberTable::new(&many) }
+        Self { table: FiberTable::new(&many), is_dealt: true, ..Self::of(yarn) }
     }
 
     /// The table of one ply, outermost first.
     fn deal(&self, random: &mut Random) -> FiberTable {
-        let pool = &self.pool;
+        let pool = &self.table;
         let mut hand: Vec<_> =
             (0..self.yarn.fibers_per_ply).map(|_| (random.unit() * pool.radius.len() as f64) as usize).collect();
         hand.sort_unstable();
@@ -113,13 +124,15 @@ impl Sections {
         let mut fibers = Vec::new();
         for ply in 0..self.yarn.plies {
             let seed = (random.unit() * 1e9) as u32;
-            let table = self.deal(random);
+            let dealt = self.is_dealt.then(|| self.deal(random));
+            let table = dealt.as_ref().unwrap_or(&self.table);
             for index in 0..self.yarn.fibers_per_ply {
-                let point = fiber_point(&self.yarn, &self.twist, &table, &at, Fiber { seed, ply, index });
+                let point = fiber_point(&self.yarn, &self.twist, table, &at, Fiber { seed, ply, index });
                 let tangent = point.velocity.normalize();
                 fibers.push(SectionFiber {
                     center: section_from_yarn * point.position.truncate(),
                     tangent: (section_from_yarn * tangent.truncate()).extend(tangent.z),
+                    width: point.taper,
                 });
             }
         }

@@ -4,6 +4,7 @@
 //! the plies: ply j's centre lies at angle 2πj/K. The section repeats after 1/K of a turn.
 
 mod arrangement;
+mod bundle;
 mod core_fiber;
 mod density;
 #[cfg(test)]
@@ -16,6 +17,7 @@ mod tables;
 mod transport;
 
 pub use arrangement::TURNS;
+pub use bundle::Bundle;
 pub use core_fiber::CoreFiber;
 pub use density::SectionDensity;
 pub use occlusion::Occlusion;

@@ -3,8 +3,8 @@ use std::f64::consts::TAU;
 use glam::{DMat2, DMat4, DVec2, DVec4};
 use rayon::prelude::*;
 
-use crate::SectionDensity;
-use crate::self_shadow::{EXTENT, bilinear, depth_slice};
+use crate::Bundle;
+use crate::self_shadow::{EXTENT, bilinear};
 
 /// Texels along a side.
 const SIZE: usize = 64;
@@ -12,6 +12,8 @@ const SIZE: usize = 64;
 const DIRECTIONS: u32 = 96;
 /// Texels along a side of the optical depths that are averaged.
 const FINE_SIZE: usize = 128;
+/// Of the bundle's sections, one of so many is enough for them: the mean over directions has the noise of all.
+const SHARE: usize = 4;
 
 /// Share of the ambient light that reaches a point of a yarn's section, both ways of [WuYuksel2018 §4.2].
 ///
@@ -38,16 +40,16 @@ struct Slices {
 }
 
 impl Slices {
-    fn new(density: &SectionDensity) -> Self {
-        let count = DIRECTIONS.div_ceil(density.plies);
+    fn new(bundle: &Bundle) -> Self {
+        let count = DIRECTIONS.div_ceil(bundle.plies);
         let sector = (0..count)
             .into_par_iter()
             .map(|k| {
-                let psi = TAU / f64::from(density.plies) * (f64::from(k) + 0.5) / f64::from(count);
-                (psi, depth_slice(density, psi, FINE_SIZE))
+                let psi = TAU / f64::from(bundle.plies) * (f64::from(k) + 0.5) / f64::from(count);
+                (psi, bundle.depths(psi, FINE_SIZE, EXTENT, SHARE))
             })
             .collect();
-        Self { plies: density.plies, sector }
+        Self { plies: bundle.plies, sector }
     }
 
     fn visibility(&self, q: DVec2) -> f64 {
@@ -98,8 +100,8 @@ fn fit_cubic(samples: &[(f64, f64)]) -> DVec4 {
 
 impl Occlusion {
     /// Averages over directions, then over angles. `resolution`, ≥ 1: times as many texels along each side.
-    pub fn new(density: &SectionDensity, resolution: usize) -> Self {
-        let slices = Slices::new(density);
+    pub fn new(bundle: &Bundle, resolution: usize) -> Self {
+        let slices = Slices::new(bundle);
         let size = resolution * SIZE;
         let texel = 2.0 * EXTENT / size as f64;
         let center = |k: usize| (k as f64 + 0.5) * texel - EXTENT;
@@ -132,10 +134,10 @@ mod tests {
     #[test]
     fn visibility_grows_outwards_and_the_cubic_follows_it() {
         for name in PRESET_NAMES {
-            let density = SectionDensity::new(&Yarn::preset(name).expect(name));
-            let table = Occlusion::new(&density, 1);
+            let bundle = Bundle::of(&Yarn::preset(name).expect(name));
+            let table = Occlusion::new(&bundle, 1);
             assert!(table.visibility.iter().all(|v| (0.0..=1.0).contains(v)), "{name}");
-            let average = radial_average(&Slices::new(&density));
+            let average = radial_average(&Slices::new(&bundle));
             let at = |rho: f64| average[(rho / EXTENT * f64::from(RINGS)).round() as usize].1;
             assert!(at(0.5) < at(0.8) && at(0.8) < at(1.0) && at(1.0) < at(1.2), "{name}");
             let (mut worst, mut square) = (0.0_f64, 0.0);
@@ -161,8 +163,8 @@ mod tests {
     fn visibility_is_that_of_rays_through_explicit_fibers() {
         for name in ["cotton-1", "rayon-4", "silk-1"] {
             let yarn = Yarn::preset(name).expect(name);
-            let table = Occlusion::new(&SectionDensity::new(&yarn), 1);
-            let (dealer, mut random) = (Sections::new(&yarn), Random::new(11));
+            let table = Occlusion::new(&Bundle::of(&yarn), 1);
+            let (dealer, mut random) = (Sections::of(&yarn), Random::new(11));
             let radius = yarn.fiber_radius / yarn.outer_radius();
             // Table, cubic and rays, by distance.
             let mut bins = [(0.0, 0.0, 0.0); 4];
@@ -171,7 +173,7 @@ mod tests {
                 for _ in 0..40 {
                     let q = DVec2::from_angle(TAU * random.unit()) * random.unit().sqrt();
                     let direction = DVec2::from_angle(TAU * random.unit());
-                    if fibers.iter().any(|fiber| fiber.distance(q) < radius) {
+                    if fibers.iter().any(|fiber| fiber.holds(q, radius)) {
                         continue;
                     }
                     let blocked = fibers.iter().any(|fiber| fiber.blocks(q, direction, radius));

@@ -1,6 +1,6 @@
 use lisle_core::yarn::{FiberTable, Yarn};
 
-use crate::{CoreFiber, Occlusion, SectionDensity, SelfShadow};
+use crate::{Bundle, CoreFiber, Occlusion, SectionDensity, SelfShadow};
 
 /// Everything precomputed for one kind of yarn. The same yarn gives the same bits.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,11 +17,12 @@ impl Tables {
     /// Tables of a yarn whose parameters are valid ([`Yarn::validate`]). `resolution`, ≥ 1: times as many texels along each side of those of
     /// self-shadow and occlusion.
     pub fn new(yarn: &Yarn, resolution: usize) -> Self {
-        let density = SectionDensity::new(yarn);
+        let table = FiberTable::new(yarn);
+        let bundle = Bundle::new(yarn, &table);
         Self {
-            self_shadow: SelfShadow::new(&density, resolution),
-            occlusion: Occlusion::new(&density, resolution),
-            core_fiber: CoreFiber::new(yarn, &FiberTable::new(yarn)),
+            self_shadow: SelfShadow::new(&bundle, &SectionDensity::new(yarn), resolution),
+            occlusion: Occlusion::new(&bundle, resolution),
+            core_fiber: CoreFiber::new(yarn, &table),
         }
     }
 }

@@ -39,7 +39,7 @@ pub struct FiberTable {
 
 impl FiberTable {
     /// Samples drawn for each fiber, of which it is the median: radii of so few plain samples are off the density by enough to make a yarn a tenth darker
-    /// than the mean of its kind, which is what tables are made of.
+    /// than the mean of its kind, which is what tables of multiple scattering are made of.
     const DRAWS: usize = 32;
 
     /// Angles are what they come to; plies share them. Of four seeds, the one whose presets differ least from the mean of their kind beside the reference.

@@ -141,8 +141,8 @@ mod tests {
     use lisle_core::yarn::PRESET_NAMES;
 
     use super::*;
-    use crate::Occlusion;
     use crate::explicit::extreme_yarns;
+    use crate::{Bundle, Occlusion};
 
     const SIZE: TransportSize = TransportSize::ALL;
 
@@ -170,7 +170,7 @@ mod tests {
 
     /// Mean share of the sky that is open in the middle of a ring.
     fn open(yarn: &Yarn, ring: usize) -> f64 {
-        let occlusion = Occlusion::new(&SectionDensity::new(yarn), 1);
+        let occlusion = Occlusion::new(&Bundle::of(yarn), 1);
         let distance = (ring as f64 + 0.5) / SIZE.rings as f64 * Transport::REACH;
         (0..64).map(|k| occlusion.at(DVec2::from_angle(TAU * f64::from(k) / 64.0) * distance)).sum::<f64>() / 64.0
     }
