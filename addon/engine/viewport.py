@@ -2,6 +2,7 @@
 """One region of a 3D viewport that shows yarn: as the engine's Rendered shading, or over another engine's picture."""
 
 import itertools
+import time
 
 from .. import native
 from ..core.errors import LisleError, message_of_bug
@@ -11,7 +12,10 @@ from .screen import Screen
 from .snapshot import Snapshot
 
 WAIT_S = 0.07
-"""How long a redraw waits for the first picture of a new view; what comes later gets a redraw of its own."""
+"""How long a redraw waits at most for the first picture of a new view; what comes later gets a redraw of its own."""
+
+REDRAW_S = 0.095
+"""What it may take with the lines that it draws where no picture came in time, by as long as they took last."""
 
 _numbers = itertools.count()
 
@@ -25,6 +29,7 @@ class Viewport:
         self._on_news = on_news
         self._screen = Screen()
         self._snapshot = None
+        self._lines_s = 0.0
         self.problem = None
         """Why nothing is drawn, in words; None if all is well."""
 
@@ -54,7 +59,7 @@ class Viewport:
             return " · ".join((status, *dict.fromkeys(self._snapshot.left_out())))
         if self._snapshot.background is not None:
             self._screen.fill(self._snapshot.background, view)
-        self._screen.draw_lines(self._snapshot, view)
+        self._draw_lines(view)
         return status
 
     def draw_over(self, view, lighting, transform):
@@ -66,7 +71,12 @@ class Viewport:
         if picture is not None:
             self._screen.draw_in_depth(picture, view, transform)
         else:
-            self._screen.draw_lines(self._snapshot, view, "LESS_EQUAL", transform)
+            self._draw_lines(view, "LESS_EQUAL", transform)
+
+    def _draw_lines(self, view, *options):
+        start = time.perf_counter()
+        self._screen.draw_lines(self._snapshot, view, *options)
+        self._lines_s = time.perf_counter() - start
 
     def _picture(self, view, lighting=None, alone=False):
         """The picture if there is one, and a line for the status."""
@@ -77,7 +87,7 @@ class Viewport:
         painting.PAINTER.show(self.name, Task(key, view.size, view.region, snapshot.samples, draw))
         painting.watch(self.name, self._on_news)
         try:
-            picture = painting.PAINTER.picture(self.name, WAIT_S)
+            picture = painting.PAINTER.picture(self.name, max(min(WAIT_S, REDRAW_S - self._lines_s), 0.0))
         except Exception as error:  # raised in the thread
             return None, str(error)
         return picture, "Drawing" if picture is None else f"Sample {picture.samples}/{snapshot.samples}"
