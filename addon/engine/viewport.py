@@ -15,7 +15,7 @@ WAIT_S = 0.07
 """How long a redraw waits at most for the first picture of a new view; what comes later gets a redraw of its own."""
 
 REDRAW_S = 0.095
-"""What it may take with the lines that it draws where no picture came in time, by as long as they took last."""
+"""What it may take in all: it waits less where the lines that stand for a late picture took long the last time."""
 
 _numbers = itertools.count()
 

@@ -6,9 +6,11 @@ use lisle_core::yarn::{FiberTable, Yarn, fiber_profile};
 use rayon::prelude::*;
 
 use crate::arrangement::EVEN_STEPS;
+use crate::density::share_of_others;
 
 /// Points of fibers in all sections of plies that differ in direction, about.
 const POINTS: usize = 300_000;
+/// At least and at most so many sections.
 const SECTIONS: (usize, usize) = (64, 4096);
 /// Of more plies, each tells less.
 const FEW_PLIES: usize = 8;
@@ -21,10 +23,10 @@ const FEW_PLIES: usize = 8;
 pub struct Bundle {
     pub(crate) plies: u32,
     ply_distance: f64,
-    /// Share of a yarn's fibers that are others than the one a point lies on.
+    /// [`share_of_others`].
     others: f64,
     /// Of a fiber, where it does not thin out.
-    pub(crate) fiber_radius: f64,
+    fiber_radius: f64,
     /// Of one section.
     fibers: usize,
     /// `[section][fiber]`: place along the ply's short axis and its long one, and radius; in outer radii.
@@ -59,7 +61,7 @@ impl Bundle {
         Self {
             plies: yarn.plies,
             ply_distance: yarn.ply_distance() / outer,
-            others: 1.0 - 1.0 / (f64::from(yarn.plies) * fibers as f64),
+            others: share_of_others(yarn),
             fiber_radius,
             fibers,
             points: (0..sections * fibers).into_par_iter().map(point).collect(),

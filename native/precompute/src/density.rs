@@ -22,10 +22,15 @@ pub struct SectionDensity {
     fiber_slope: f64,
     /// 1/e_N and 1/e_B, in units of the outer radius.
     inverse_half_axes: DVec2,
-    /// Share of a yarn's fibers that are others than the one a point lies on.
+    /// [`share_of_others`].
     pub(crate) others: f64,
     /// Fibers per area of the section, at even steps of the squared relative distance from the ply centre.
     profile: Vec<f64>,
+}
+
+/// Share of a yarn's fibers that are others than the one a point lies on.
+pub(crate) fn share_of_others(yarn: &Yarn) -> f64 {
+    1.0 - 1.0 / f64::from(yarn.plies * yarn.fibers_per_ply)
 }
 
 impl SectionDensity {
@@ -46,7 +51,7 @@ impl SectionDensity {
             ply_slope: if yarn.plies > 1 { TAU * outer / yarn.ply_twist } else { 0.0 },
             fiber_slope: TAU * outer / yarn.fiber_twist,
             inverse_half_axes: half_axes.recip(),
-            others: 1.0 - 1.0 / f64::from(yarn.plies * yarn.fibers_per_ply),
+            others: share_of_others(yarn),
             profile: radial_profile(yarn).into_iter().map(|density| per_disc * density).collect(),
         }
     }
