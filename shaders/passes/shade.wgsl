@@ -63,7 +63,7 @@ struct Around {
     yarns: array<vec3f, MOST_SKY_VIEWS>,
 }
 
-fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, hidden: vec3f, even: vec3f) -> Around {
+fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: TransportPoint, even: vec3f) -> Around {
     var around: Around;
     let share = 1.0 / f32(max(frame.sky_view_count, 1u));
     if frame.sky_view_count == 0u {
@@ -73,11 +73,11 @@ fn look_around(yarn: Yarn, surface: Surface, seen: SeenPoint, transport: Transpo
     loop {
         let direction = sky_direction(frame.sky_view + i);
         let shadow = tube_shadow(frame.sky_view + i, shadow_tube(yarn, surface.tube), surface.position, direction);
-        let by_yarns = 1.0 - shadow.open - shadow.solid;
         around.open += share * shadow.open;
         if MULTIPLE {
-            let scattered = transport_ambient(transport, seen.section, direction) * hidden;
+            let scattered = transport_ambient(transport, seen.section, direction);
             around.sky += (share * shadow.open) * scattered;
+            let by_yarns = 1.0 - shadow.open - shadow.solid;
             around.yarns[i] = (share * by_yarns) * (scattered + even * self_shadow(yarn, seen, direction));
         }
         i++;
@@ -110,64 +110,51 @@ fn neighbours_radiance(transport: u32, around: Around, direction: vec3f) -> vec3
     return sum;
 }
 
-// Share of the directions around a point of a cloth in which it sees the sky: one of its two sides.
-const CLOTH_OPEN: f32 = 0.5;
+// Share of the directions in which a yarn in a cloth sees the sky. By rays through tubes, light that has left two yarns meets another one in 0.69 of cases in a knit, in
+// 0.57 in a plain weave, in 0.60 in a glove.
+const CLOTH_OPEN: f32 = 0.36;
 
-// Share of a cloth's surfaces on the side of a light from its front or back that the light reaches, others being behind them: by rays through
-// tubes 0.62 in a knit, 0.68 and 0.66 in a plain weave, 0.61 in a glove.
-const CLOTH_LIT: f32 = 0.63;
+// Light on a point's neighbours by that on its own yarn: they are lit about as it is, and where a neighbour is between it and the light, that one is. By rays through tubes
+// 0.62 of the light in a knit from the front, where 0.74 is on yarns that are seen; 0.46 and 0.42 from the back, 0.27 and 0.32 along it; in a plain weave 0.68 and 0.75, 0.45 and
+// 0.42, 0.31 and 0.35.
+const LIT_AS_ITSELF: f32 = 0.6;
+const LIT_BEFORE_IT: f32 = 0.5;
 
-// Sine of the angle between such a light and the yarns, which lie across it: the mean in those three is 0.82 to 0.87; of yarns in all directions alike, for
-// which tables have their radiance, π / 4.
-const CLOTH_SINE: f32 = 0.85;
+// A neighbour is one up to so many diameters away, and none from so many on: by the way to its far side.
+const BESIDE_BEGIN: f32 = 1.0;
+const BESIDE_END: f32 = 1.5;
+
+// Mean sine of the angle between yarns in all directions alike, for which tables have their radiance, and a light.
 const ISOTROPIC_SINE: f32 = 0.25 * PI;
 
-// Light through so many yarns' diameters, one after the other, has come through the cloth that a point is in, or along it: it starts to at the
-// one, and has at the other.
-const CLOTH_BEGIN: f32 = 1.5;
-const CLOTH_END: f32 = 3.0;
-
-// What other yarns leave of a light.
-struct Passing {
-    // Share that comes straight.
-    straight: f32,
-    // Share that they scatter on, over the half space of the light: each yarn some, as hairs do in [Zinke2008].
-    spread: vec3f,
-    // Share that comes to the cloth that the point is in.
-    on_cloth: f32,
-}
-
-// Of light that fibers take, by a share of the light on the yarn's circle, in which is what goes beside them. Never 0, of which a power may be no number,
-// nor by rounding, where a yarn of one fiber takes next to nothing, more than all.
+// Of light that fibers take, by a share of the light on the yarn's circle, in which is what goes beside them. A yarn of one fiber takes next to nothing.
 fn taken_share(yarn: Yarn, share: vec3f) -> vec3f {
-    return clamp((share - (1.0 - yarn.tube_radius)) / max(yarn.tube_radius, 1e-6), vec3f(1e-6), vec3f(1.0));
+    return clamp((share - (1.0 - yarn.tube_radius)) / max(yarn.tube_radius, 1e-6), vec3f(0.0), vec3f(1.0));
 }
 
-// A place about a yarn's radius beside a point, across the way to a light, in a random direction: within the yarn's width.
-fn place_beside(surface: Surface, toward_light: vec3f, random: vec3f) -> vec3f {
+// A place by which light enters a yarn that is scattered to a point more than once [Khungurn2017 §5.3.2]; `random`: a direction.
+fn place_of_entry(entries: Entries, surface: Surface, toward_light: vec3f, random: vec3f) -> vec3f {
     let aside = random - toward_light * dot(random, toward_light);
     let across = cross(toward_light, surface.tube.tangent);
     let side = across / max(length(across), 1e-6);
-    let here = dot(surface.position - surface.tube.center, side) / surface.tube.radius;
-    let beyond = here + dot(aside, side);
-    // Reflected by the yarn's edge.
-    let there = select(beyond, 2.0 * sign(beyond) - beyond, abs(beyond) > 1.0);
-    return surface.position + surface.tube.radius * (aside + side * (there - beyond));
+    let here = dot(surface.position - surface.tube.center, side);
+    return surface.position + aside * (entries.reach * surface.tube.radius) + side * ((entries.share - 1.0) * here);
 }
 
-fn passing_light(yarn: Yarn, through: vec3f, light: Light, incident: Incident, tube: Tube, position: vec3f) -> Passing {
-    let shadow = light_shadow(light, incident, shadow_tube(yarn, tube), position);
+// What of a light there is at a place and near it.
+struct Arriving {
+    // Share that comes there.
+    here: f32,
+    // The same of the neighbours.
+    beside: f32,
+}
+
+fn arriving_light(light: Light, incident: Incident, tube: Tube, radius: f32, position: vec3f) -> Arriving {
+    let shadow = light_shadow(light, incident, tube, position);
     // Meshes let nothing through.
     let blocked = 1.0 - shadow.open - shadow.solid;
-    var spread = vec3f(0.0);
-    var on_cloth = shadow.open;
-    if MULTIPLE {
-        // Through air it is spread as well, so that all of the way counts.
-        let yarns_above = max(shadow.way / (2.0 * tube.radius), 1.0);
-        spread = blocked * pow(taken_share(yarn, through), vec3f(yarns_above));
-        on_cloth += blocked * (1.0 - smoothstep(CLOTH_BEGIN, CLOTH_END, yarns_above));
-    }
-    return Passing(shadow.open, spread, on_cloth);
+    let is_beside = 1.0 - smoothstep(BESIDE_BEGIN, BESIDE_END, shadow.way / (2.0 * radius));
+    return Arriving(shadow.open, LIT_AS_ITSELF * shadow.open + LIT_BEFORE_IT * blocked * is_beside);
 }
 
 // Radiance by what it comes from: light scattered once, by lobe, and more than once; and ambient light, however often it is scattered.
@@ -197,22 +184,20 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     let seen = seen_point(yarn, section, surface.tangent, view);
     let even_lobes = even_light(material, dot(surface.tangent, view));
     let even = even_lobes.around + even_lobes.through;
-    let own_sky = self_sky(yarn, seen);
     var transport: TransportPoint;
-    var albedo: YarnAlbedo;
+    var entries: Entries;
+    // Share of the light on a yarn that it gives back.
+    var albedo: vec3f;
     // Light that yarns lit alike send each other.
     var gain: vec3f;
-    // Light scattered more than once comes from the directions in which fibers are. A point that is seen has fewer of them than others there,
-    // but as many behind, where light comes from that goes straight on.
-    var hidden: vec3f;
     if MULTIPLE {
         transport = transport_point(draws[draw].transport, section, surface.tube.tangent, view);
-        albedo = yarn_albedo(draws[draw].transport);
-        let around_it = (1.0 - own_sky) / max(1.0 - self_occlusion(yarn, section), 0.01);
-        hidden = (even_lobes.around * around_it + even_lobes.through) / max(even, vec3f(1e-6));
-        gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * albedo.albedo);
+        entries = transport_entries(draws[draw].transport);
+        albedo = taken_share(yarn, transport_albedo(draws[draw].transport));
+        gain = 1.0 / (1.0 - (1.0 - CLOTH_OPEN) * albedo);
     }
-    let around = look_around(yarn, surface, seen, transport, hidden, even);
+    let tube = shadow_tube(yarn, surface.tube);
+    let around = look_around(yarn, surface, seen, transport, even);
     var shaded: Shaded;
     var i = 0u;
     loop {
@@ -226,26 +211,21 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
             break;
         }
         let own = self_shadows(yarn, seen, incident.direction);
-        let passing = passing_light(yarn, albedo.through, light, incident, surface.tube, surface.position);
+        let open = light_shadow(light, incident, tube, surface.position).open;
         let reflected = reflected_once(material, surface, incident.direction, view);
-        let straight = incident.irradiance * (own.width * passing.straight);
+        let straight = incident.irradiance * (own.width * open);
         shaded.once.specular += reflected.specular * straight;
         shaded.once.transmission += reflected.transmission * straight;
-        shaded.once.diffuse += reflected.diffuse * incident.irradiance * (own.point * passing.straight);
+        shaded.once.diffuse += reflected.diffuse * incident.irradiance * (own.point * open);
         shaded.arriving += luminance(straight);
         shaded.shining += luminance(incident.irradiance);
         if MULTIPLE {
-            // TT takes in what other yarns scatter as far as that half space is behind the fiber.
-            let behind = 0.5 - 0.5 * dot(section_direction(section, incident.direction).unit, seen.view);
-            shaded.scattered += (0.5 * even_lobes.around + behind * even_lobes.through) * incident.irradiance * passing.spread * (own.width / PI);
-            // Fibers send each other light over about a yarn's radius, which blurs the shadows in it [Khungurn2017 §5.3.2]: another place for each sample.
-            let place = place_beside(surface, incident.direction, sky_direction(frame.sky_view));
-            let blurred = passing_light(yarn, albedo.through, light, incident, surface.tube, place);
-            let arriving = incident.irradiance * (blurred.straight + blurred.spread);
-            shaded.scattered += transport_radiance(transport, section, incident.direction) * arriving * hidden;
-            // Neighbours have the mean irradiance of the cloth: some are lit, and the others by what those scatter on.
-            let on_lit = incident.irradiance * (blurred.on_cloth * CLOTH_SINE / ISOTROPIC_SINE);
-            let on_neighbours = on_lit * mix(taken_share(yarn, albedo.through), vec3f(1.0), CLOTH_LIT);
+            let entry = place_of_entry(entries, surface, incident.direction, sky_direction(frame.sky_view));
+            let arriving = arriving_light(light, incident, tube, surface.tube.radius, entry);
+            shaded.scattered += transport_radiance(transport, section, incident.direction) * incident.irradiance * arriving.here;
+            // Neighbours lie about as the yarn does. They have their radiance within their tubes alone.
+            let across = length(cross(incident.direction, surface.tube.tangent)) / ISOTROPIC_SINE;
+            let on_neighbours = incident.irradiance * (arriving.beside * across / max(yarn.tube_radius, 1e-6));
             shaded.scattered += neighbours_radiance(draws[draw].transport, around, incident.direction) * on_neighbours * gain;
         }
         if i >= frame.light_count {
@@ -253,11 +233,11 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
         }
     }
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
-    var sky = (even_lobes.around * own_sky + even_lobes.through * own_behind) * around.open;
+    var sky = (even_lobes.around * self_sky(yarn, seen) + even_lobes.through * own_behind) * around.open;
     if MULTIPLE {
         sky += around.sky;
         for (var k = 0u; k < frame.sky_view_count; k++) {
-            sky += around.yarns[k] * albedo.albedo * (CLOTH_OPEN * gain);
+            sky += around.yarns[k] * albedo * (CLOTH_OPEN * gain);
         }
     }
     shaded.ambient = frame.ambient * sky;

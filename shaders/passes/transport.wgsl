@@ -1,6 +1,7 @@
 // Light that a yarn's fibers scatter more than once, from tables of native/precompute/src/transport, where they are described.
 
-// As TransportSize::ALL and Transport::REACH.
+// As Tables::add_transport, TransportSize::ALL and Transport::REACH have them.
+const TRANSPORT_HEAD: u32 = 5u;
 const TRANSPORT_LIGHT_LONGITUDES: u32 = 8u;
 const TRANSPORT_LIGHT_AZIMUTHS: u32 = 24u;
 const TRANSPORT_RINGS: u32 = 6u;
@@ -58,7 +59,7 @@ fn transport_point(table: u32, section: SectionPoint, yarn_tangent: vec3f, view:
     let l = between((0.5 * dot(view, yarn_axis) + 0.5) * f32(TRANSPORT_VIEW_LONGITUDES), TRANSPORT_VIEW_LONGITUDES);
     let offsets = vec2u(l.first, l.second).xxyy * TRANSPORT_VIEW_AZIMUTHS + vec2u(a.first, a.second).xyxy;
     let weights = vec2f(1.0 - l.share, l.share).xxyy * vec2f(1.0 - a.share, a.share).xyxy;
-    return TransportPoint(table + 6u + TRANSPORT_ANGLES, azimuth, ring, offsets, weights, TRANSPORT_OUTGOING - 1u - offsets, yarn_axis);
+    return TransportPoint(table + TRANSPORT_HEAD + TRANSPORT_ANGLES, azimuth, ring, offsets, weights, TRANSPORT_OUTGOING - 1u - offsets, yarn_axis);
 }
 
 fn transport_cell(first: u32, offsets: vec4u, weights: vec4f) -> vec3f {
@@ -112,21 +113,26 @@ fn transport_ambient(point: TransportPoint, section: SectionPoint, direction: ve
     return transport_side(point, point.table + TRANSPORT_LIGHT_LONGITUDES * TRANSPORT_SIDES, light, point.offsets);
 }
 
-// Share of the light on a yarn that leaves it, and that on the side away from the light.
-struct YarnAlbedo {
-    albedo: vec3f,
-    through: vec3f,
+// Share of the light on a yarn that leaves it.
+fn transport_albedo(table: u32) -> vec3f {
+    return vec3f(table_value(table), table_value(table + 1u), table_value(table + 2u));
 }
 
-fn yarn_albedo(table: u32) -> YarnAlbedo {
-    let albedo = vec3f(table_value(table), table_value(table + 1u), table_value(table + 2u));
-    let through = vec3f(table_value(table + 3u), table_value(table + 4u), table_value(table + 5u));
-    return YarnAlbedo(albedo, through);
+// Where light enters that is scattered more than once, by its distance from the plane through the yarn's axis and the light.
+struct Entries {
+    // Its mean over that of the place that is seen.
+    share: f32,
+    // As far from there, radii.
+    reach: f32,
+}
+
+fn transport_entries(table: u32) -> Entries {
+    return Entries(table_value(table + 3u), table_value(table + 4u));
 }
 
 // Radiance of a yarn as a whole per irradiance, by the cosine between the ways to light and viewer.
 fn yarn_radiance(table: u32, cosine: f32) -> vec3f {
     let angle = between((0.5 * cosine + 0.5) * f32(TRANSPORT_ANGLES), TRANSPORT_ANGLES);
-    let first = table + 6u;
+    let first = table + TRANSPORT_HEAD;
     return mix(shared_exponent(table_word(first + angle.first)), shared_exponent(table_word(first + angle.second)), angle.share);
 }

@@ -196,10 +196,12 @@ impl TableBuffer {
         });
     }
 
-    /// Offset of a transport table: albedo, through, then the three tables of [`Transport`].
+    /// Offset of a transport table: albedo, where light enters, then the three tables of [`Transport`].
     pub fn add_transport(&mut self, transport: &Transport) -> u32 {
-        let colors = [transport.albedo, transport.through].map(|color| color.as_vec3().to_array());
-        let first = self.words.append(colors.into_iter().flatten());
+        let albedo = transport.albedo.as_vec3().to_array();
+        // As half the width of an even distribution.
+        let entry = [transport.entry.share, transport.entry.spread * 3.0_f64.sqrt()].map(|x| x as f32);
+        let first = self.words.append(albedo.into_iter().chain(entry));
         self.words.append_words(
             transport
                 .sides

@@ -1,9 +1,9 @@
 //! Multiple scattering within a yarn, as a table.
 
-mod medium;
+mod section;
 mod store;
 mod table;
 mod walk;
 
 pub use store::TransportStore;
-pub use table::{Transport, TransportSize};
+pub use table::{Entry, Transport, TransportSize};

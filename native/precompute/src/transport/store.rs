@@ -9,10 +9,10 @@ use glam::DVec3;
 use lisle_core::scattering::Material;
 use lisle_core::yarn::Yarn;
 
-use super::{Transport, TransportSize};
+use super::{Entry, Transport, TransportSize};
 
 /// To be raised whenever the same key gives another table.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Files beyond this number go, those used longest ago first: about 300 MB.
 const MOST_FILES: usize = 200;
@@ -91,26 +91,27 @@ impl TransportStore {
     }
 }
 
-/// A table's numbers, in the order of its fields. Albedo and through in single precision, as the renderer has them.
+/// A table's numbers, in the order of its fields. All in single precision, as the renderer has them.
 fn values(transport: &Transport) -> impl Iterator<Item = f32> {
-    let Transport { radiance, ambient, sides, albedo, through } = transport;
-    let colors = [albedo, through].map(|color| color.as_vec3().to_array());
+    let Transport { radiance, ambient, sides, albedo, entry } = transport;
     let tables = radiance.iter().chain(ambient).chain(sides).copied();
-    tables.chain(colors).flatten()
+    tables.chain([albedo.as_vec3().to_array()]).flatten().chain([entry.share as f32, entry.spread as f32])
 }
 
 fn transport(bytes: &[u8]) -> Option<Transport> {
     let (numbers, rest) = bytes.as_chunks::<4>();
     let (colors, rest_numbers) = numbers.as_chunks::<3>();
+    let [share, spread] = *rest_numbers else { return None };
+    let [share, spread] = [share, spread].map(|number| f64::from(f32::from_le_bytes(number)));
     let mut colors = colors.iter().map(|color| color.map(f32::from_le_bytes));
     let size = TransportSize::ALL;
     let per_light = size.cells() / size.light_longitudes;
     let mut take = |count: usize| -> Vec<[f32; 3]> { colors.by_ref().take(count).collect() };
-    let (radiance, ambient, sides, last) = (take(size.cells()), take(per_light), take(size.sides), take(3));
-    let is_whole = rest.is_empty() && rest_numbers.is_empty() && sides.len() == size.sides;
-    let [albedo, through] = *last.as_slice() else { return None };
-    let color = |values: [f32; 3]| DVec3::from(values.map(f64::from));
-    is_whole.then(|| Transport { radiance, ambient, sides, albedo: color(albedo), through: color(through) })
+    let (radiance, ambient, sides, last) = (take(size.cells()), take(per_light), take(size.sides), take(2));
+    let is_whole = rest.is_empty() && sides.len() == size.sides;
+    let [albedo] = *last.as_slice() else { return None };
+    let (albedo, entry) = (DVec3::from(albedo.map(f64::from)), Entry { share, spread });
+    is_whole.then_some(Transport { radiance, ambient, sides, albedo, entry })
 }
 
 #[cfg(test)]
@@ -141,7 +142,10 @@ mod tests {
         let kept = store.load(&yarn, &material, 2_000).expect("kept");
         assert_eq!((&kept.radiance, &kept.ambient, &kept.sides), (&made.radiance, &made.ambient, &made.sides));
         assert_eq!(kept.albedo.as_vec3(), made.albedo.as_vec3());
-        assert_eq!(kept.through.as_vec3(), made.through.as_vec3());
+        assert_eq!(
+            [kept.entry.share, kept.entry.spread].map(|x| x as f32),
+            [made.entry.share, made.entry.spread].map(|x| x as f32)
+        );
         assert!(store.load(&yarn, &material, 3_000).is_none(), "other photons");
         let other = Material { beta_r_rad: material.beta_r_rad * (1.0 + 1e-15), ..material };
         assert!(store.load(&yarn, &other, 2_000).is_none(), "another material");

@@ -1,13 +1,11 @@
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::ControlFlow;
 
 use glam::DVec3;
 use lisle_core::scattering::Material;
 use lisle_core::yarn::Yarn;
 
-use super::medium::Medium;
 use super::walk::{Tally, walk};
-use crate::SectionDensity;
 
 /// Cells of a [`Transport`] along each of its axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,9 +33,14 @@ impl TransportSize {
         self.view_longitudes * self.view_azimuths
     }
 
+    /// Cells of place and viewer.
+    pub(super) fn places(&self) -> usize {
+        self.rings * self.outgoing()
+    }
+
     /// Cells in all.
     pub fn cells(&self) -> usize {
-        self.light_longitudes * self.light_azimuths * self.rings * self.outgoing()
+        self.light_longitudes * self.light_azimuths * self.places()
     }
 }
 
@@ -55,8 +58,17 @@ pub struct Transport {
     pub sides: Vec<[f32; 3]>,
     /// Share of the light on the yarn, from all directions, that leaves it again, and that goes on through it.
     pub albedo: DVec3,
-    /// Of the albedo, what leaves on the side away from the light.
-    pub through: DVec3,
+    /// Where light came in that is scattered more than once.
+    pub entry: Entry,
+}
+
+/// Where light enters a yarn that is scattered more than once and seen from its lit side, by its distance from the plane through the yarn's axis and the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Its mean over that of the place that is seen.
+    pub share: f64,
+    /// Its standard deviation from there, outer radii.
+    pub spread: f64,
 }
 
 impl Transport {
@@ -72,9 +84,8 @@ impl Transport {
         photons: u32,
         proceed: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> ControlFlow<(), Self> {
-        let medium = Medium::new(SectionDensity::new(yarn));
-        let tally = walk(&medium, material, photons, proceed)?;
-        ControlFlow::Continue(Self::from_tally(&medium, &tally, TransportSize::ALL))
+        let tally = walk(yarn, material, photons, proceed)?;
+        ControlFlow::Continue(Self::from_tally(tally, TransportSize::ALL))
     }
 
     /// How often [`Self::new`] asks.
@@ -82,51 +93,57 @@ impl Transport {
         super::walk::batches(photons)
     }
 
-    fn from_tally(medium: &Medium, tally: &Tally, size: TransportSize) -> Self {
-        let lengths = ring_lengths(medium, size);
-        let solid_angle = (2.0 / size.view_longitudes as f64) * (PI / size.view_azimuths as f64);
-        let per_ring = size.outgoing();
-        let per_longitude = size.light_azimuths * size.rings * per_ring;
+    fn from_tally(mut tally: Tally, size: TransportSize) -> Self {
+        share_with_neighbours(&mut tally, size);
+        let places = size.places();
+        let per_longitude = size.light_azimuths * places;
         let mut radiance = Vec::with_capacity(size.cells());
         let mut ambient = vec![DVec3::ZERO; per_longitude];
         for (k, sum) in tally.cells.iter().enumerate() {
-            let ring = k / per_ring % size.rings;
-            let fibers = lengths[ring] / size.light_azimuths as f64 * medium.diameter();
-            let value = if fibers > 0.0 { *sum / (fibers * solid_angle) } else { DVec3::ZERO };
+            let (longitude, within) = (k / per_longitude, k % per_longitude);
+            let (azimuth, place) = (within / places, within % places);
+            let light = TAU * (theta(longitude + 1, size).sin() - theta(longitude, size).sin());
+            let paths = tally.seen[place] * light / size.light_azimuths as f64;
+            let value = if paths > 0.0 { *sum / paths } else { DVec3::ZERO };
             radiance.push(value.as_vec3().to_array());
-            let longitude = k / per_longitude;
-            let light = 2.0 * PI * (theta(longitude + 1, size).sin() - theta(longitude, size).sin());
             // θ_i < 0 is the same, turned by half a turn about a line across the yarn.
-            let within = k % per_longitude;
-            let (azimuth, rest) = (within / (size.rings * per_ring), within % (size.rings * per_ring));
-            let (ring, outgoing) = (rest / per_ring, rest % per_ring);
-            let turned_azimuth = size.light_azimuths - 1 - azimuth;
-            let turned = (turned_azimuth * size.rings + ring) * per_ring + (per_ring - 1 - outgoing);
+            let (ring, outgoing) = (place / size.outgoing(), place % size.outgoing());
+            let turned = ((size.light_azimuths - 1 - azimuth) * size.rings + ring + 1) * size.outgoing() - 1 - outgoing;
             ambient[within] += value * light;
             ambient[turned] += value * light;
         }
         let ambient = ambient.into_iter().map(|value| value.as_vec3().to_array()).collect();
-        let side = 4.0 * PI / size.sides as f64;
+        let side = 4.0 * PI / size.sides as f64 * tally.on_yarn;
         let sides = tally.sides.iter().map(|sum| (*sum / side).as_vec3().to_array()).collect();
-        Self { radiance, ambient, sides, albedo: tally.albedo(), through: tally.through() }
+        let entry = tally.entries.entry();
+        Self { radiance, ambient, sides, albedo: tally.albedo(), entry }
+    }
+}
+
+/// Paths that tell a place's radiance, at least. A viewer sees few of the inner fibers.
+const LEAST_SEEN: f64 = 30.0;
+
+/// Where few paths began, takes in those of the next ring, from the outermost inwards and back.
+fn share_with_neighbours(tally: &mut Tally, size: TransportSize) {
+    let (outgoing, places) = (size.outgoing(), size.places());
+    let inwards = (0..size.rings - 1).rev().map(|ring| (ring, ring + 1));
+    let outwards = (1..size.rings).map(|ring| (ring, ring - 1));
+    for (to, from) in inwards.chain(outwards) {
+        for k in 0..outgoing {
+            let (to, from) = (to * outgoing + k, from * outgoing + k);
+            if tally.seen[to] < LEAST_SEEN {
+                tally.seen[to] += tally.seen[from];
+                for first in (0..size.cells()).step_by(places) {
+                    let more = tally.cells[first + from];
+                    tally.cells[first + to] += more;
+                }
+            }
+        }
     }
 }
 
 pub(super) fn theta(longitude: usize, size: TransportSize) -> f64 {
     FRAC_PI_2 * longitude as f64 / size.light_longitudes as f64
-}
-
-/// Length of fibers in each ring per length of the yarn, times the ring's area.
-fn ring_lengths(medium: &Medium, size: TransportSize) -> Vec<f64> {
-    const STEPS: u32 = 400;
-    let cell = 2.0 * medium.reach() / f64::from(STEPS);
-    let mut lengths = vec![0.0; size.rings];
-    for k in 0..STEPS * STEPS {
-        let at = |i: u32| (f64::from(i) + 0.5) * cell - medium.reach();
-        let q = glam::DVec2::new(at(k % STEPS), at(k / STEPS));
-        lengths[ring(q.length(), size)] += medium.length_density(q) * cell * cell;
-    }
-    lengths
 }
 
 pub(super) fn ring(distance: f64, size: TransportSize) -> usize {
@@ -135,14 +152,12 @@ pub(super) fn ring(distance: f64, size: TransportSize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::TAU;
-
     use glam::DVec2;
     use lisle_core::yarn::PRESET_NAMES;
 
     use super::*;
     use crate::explicit::extreme_yarns;
-    use crate::{Bundle, Occlusion};
+    use crate::{Bundle, Occlusion, SectionDensity, SelfShadow};
 
     const SIZE: TransportSize = TransportSize::ALL;
 
@@ -152,6 +167,12 @@ mod tests {
         Material { diffuse: DVec3::splat(albedo), diffuse_weight: 1.0, ..base }
     }
 
+    /// Fibers that reflect a share of the light, all around: what they take in is the mean over all azimuths.
+    fn mirrors(albedo: f64) -> Material {
+        let base = Material::preset("cotton").expect("preset");
+        Material { color_r: DVec3::splat(albedo), color_tt: DVec3::ZERO, diffuse_weight: 0.0, ..base }
+    }
+
     fn made(yarn: &Yarn, material: &Material, photons: u32) -> Transport {
         match Transport::new(yarn, material, photons, &mut || ControlFlow::Continue(())) {
             ControlFlow::Continue(transport) => transport,
@@ -159,47 +180,57 @@ mod tests {
         }
     }
 
-    /// Mean of the table over all lights and viewers, ring by ring.
-    fn rings(transport: &Transport) -> Vec<f64> {
-        let mut sums = [0.0; SIZE.rings];
-        for (k, value) in transport.ambient.iter().enumerate() {
-            sums[k / SIZE.outgoing() % SIZE.rings] += f64::from(value[0]);
-        }
-        sums.iter().map(|sum| sum / (SIZE.light_azimuths * SIZE.outgoing()) as f64).collect()
-    }
-
-    /// Mean share of the sky that is open in the middle of a ring.
-    fn open(yarn: &Yarn, ring: usize) -> f64 {
-        let occlusion = Occlusion::new(&Bundle::of(yarn), 1);
-        let distance = (ring as f64 + 0.5) / SIZE.rings as f64 * Transport::REACH;
-        (0..64).map(|k| occlusion.at(DVec2::from_angle(TAU * f64::from(k) / 64.0) * distance)).sum::<f64>() / 64.0
-    }
-
     const PHOTONS: u32 = 300_000;
 
-    /// In the middle of a yarn of white fibers under an even sky, light scattered before makes up for the sky that is hidden. (Farther out, fibers are seen
-    /// from outside alone, on their open side.) With four times the photons the presets are within 0.033, with these within 0.05.
-    const FURNACE_BOUND: f64 = 0.06;
+    /// Under an even sky, light scattered before makes up for the sky that fibers hide from a point that is seen, by tables of self-shadow and occlusion, which know nothing
+    /// of the walk. (Found: 0.017 to 0.037.)
+    const FURNACE_BOUND: f64 = 0.05;
 
+    /// Of all that viewers at about a right angle see.
     fn furnace_error(yarn: &Yarn, material: &Material) -> f64 {
-        let transport = made(yarn, material, PHOTONS);
-        (rings(&transport)[0] + open(yarn, 0) - 1.0).abs()
+        let ControlFlow::Continue(tally) = walk(yarn, material, PHOTONS, &mut || ControlFlow::Continue(())) else {
+            unreachable!("nobody stopped it")
+        };
+        let transport = Transport::from_tally(tally.clone(), SIZE);
+        let bundle = Bundle::of(yarn);
+        let occlusion = Occlusion::new(&bundle, 1);
+        let self_shadow = SelfShadow::new(&bundle, &SectionDensity::new(yarn), 1);
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for cell in 0..SIZE.places() {
+            let (ring, longitude) = (cell / SIZE.outgoing(), cell / SIZE.view_azimuths % SIZE.view_longitudes);
+            if longitude.abs_diff(SIZE.view_longitudes / 2) > 1 {
+                continue;
+            }
+            let before = |azimuth: usize| f64::from(transport.ambient[azimuth * SIZE.places() + cell][0]);
+            let before = (0..SIZE.light_azimuths).map(before).sum::<f64>() / SIZE.light_azimuths as f64;
+            let distance = (ring as f64 + 0.5) / SIZE.rings as f64 * Transport::REACH;
+            let view = PI * (((cell % SIZE.view_azimuths) as f64 + 0.5) / SIZE.view_azimuths as f64 - 0.5);
+            let open = |k: u32| {
+                let azimuth = TAU * f64::from(k) / 64.0;
+                let q = DVec2::from_angle(azimuth) * distance;
+                (occlusion.at(q) + self_shadow.sky_of_seen(azimuth + view, q)).min(1.0)
+            };
+            let open = (0..64).map(open).sum::<f64>() / 64.0;
+            sum += tally.seen[cell] * (before + open - 1.0);
+            weights += tally.seen[cell];
+        }
+        sum / weights
     }
 
     #[test]
     fn white_fibers_disappear_in_a_furnace() {
         for name in PRESET_NAMES {
             let yarn = Yarn::preset(name).expect(name);
-            let error = furnace_error(&yarn, &lambert(1.0));
+            let error = furnace_error(&yarn, &mirrors(1.0));
             println!("{name}: {error:.4}");
-            assert!(error < FURNACE_BOUND, "{name}: {error}");
+            assert!(error.abs() < FURNACE_BOUND, "{name}: {error}");
         }
     }
 
     #[test]
     fn fibers_that_absorb_a_tenth_are_rejected_by_the_same_check() {
         let yarn = Yarn::preset("cotton-1").expect("preset");
-        assert!(furnace_error(&yarn, &lambert(0.9)) > FURNACE_BOUND);
+        assert!(furnace_error(&yarn, &mirrors(0.9)) < -FURNACE_BOUND);
     }
 
     #[test]
@@ -211,7 +242,6 @@ mod tests {
         let black = made(&yarn, &lambert(0.0), PHOTONS);
         assert!(black.radiance.iter().flatten().all(|x| *x == 0.0));
         assert!(black.albedo.x > 0.0 && black.albedo.x < 0.3, "light between the fibers: {}", black.albedo);
-        assert!((black.albedo - black.through).abs().max_element() < 1e-12);
         let gray = made(&yarn, &lambert(0.5), PHOTONS);
         assert!(gray.albedo.x > black.albedo.x && gray.albedo.x < white.albedo.x);
     }
@@ -255,7 +285,7 @@ mod tests {
             let t = made(&yarn, &Material::preset("cotton").expect("preset"), 20_000);
             let values = t.radiance.iter().chain(&t.ambient).chain(&t.sides).flatten();
             assert!(values.clone().all(|x| x.is_finite() && *x >= 0.0), "{yarn:?}");
-            assert!(t.albedo.is_finite() && t.through.is_finite());
+            assert!(t.albedo.is_finite() && t.entry.share.is_finite() && t.entry.spread.is_finite());
         }
     }
 }
