@@ -29,7 +29,7 @@ fn even_light(material: Material, sin_theta_o: f32) -> EvenLight {
     if PHYSICAL {
         return physical_ambient(material, ambient_factors(material, sin_theta_o));
     }
-    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0));
+    return EvenLight(simple_ambient(material, sin_theta_o), vec3f(0.0), vec3f(0.0));
 }
 
 // Radiance of a fiber per irradiance, by light scattered once.
@@ -48,6 +48,18 @@ fn self_shadow_behind(yarn: Yarn, seen: SeenPoint, gamma: f32) -> f32 {
     let beside = seen.section.y * seen.view.x - seen.section.x * seen.view.y;
     let off = beside * sin(gamma);
     return 0.5 * (self_shadow(yarn, seen, behind * cos(gamma) + off) + self_shadow(yarn, seen, behind * cos(gamma) - off));
+}
+
+// Lambert's term takes in light by the cosine to its normal, over a section's angles: their standard deviation, √(π²/4 − 2), of which two angles so far off are
+// Gauss's quadrature.
+const LAMBERT_ANGLE: f32 = 0.6837;
+
+// Share of the sky that Lambert's term takes in and that the yarn's own fibers let through.
+fn self_shadow_facing(yarn: Yarn, seen: SeenPoint, normal: vec3f) -> f32 {
+    let n = section_direction(seen.section, normal).unit;
+    let facing = (seen.section.x * n.x + seen.section.y * n.y) * cos(LAMBERT_ANGLE);
+    let beside = (seen.section.y * n.x - seen.section.x * n.y) * sin(LAMBERT_ANGLE);
+    return 0.5 * (self_shadows(yarn, seen, facing + beside).point + self_shadows(yarn, seen, facing - beside).point);
 }
 
 // As in native/gpu/src/frame/mod.rs.
@@ -183,7 +195,7 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     let section = section_point(surface.tube, surface.radial, surface.tangential, surface.winding, surface.position);
     let seen = seen_point(yarn, section, surface.tangent, view);
     let even_lobes = even_light(material, dot(surface.tangent, view));
-    let even = even_lobes.around + even_lobes.through;
+    let even = even_lobes.around + even_lobes.through + even_lobes.facing;
     var transport: TransportPoint;
     var entries: Entries;
     // Share of the light on a yarn that it gives back.
@@ -234,6 +246,9 @@ fn shade(draw: u32, surface: Surface) -> Shaded {
     }
     let own_behind = self_shadow_behind(yarn, seen, material.gamma_tt);
     var sky = (even_lobes.around * self_sky(yarn, seen) + even_lobes.through * own_behind) * around.open;
+    if any(even_lobes.facing > vec3f(0.0)) {
+        sky += even_lobes.facing * (self_shadow_facing(yarn, seen, surface.normal) * around.open);
+    }
     if MULTIPLE {
         sky += around.sky;
         for (var k = 0u; k < frame.sky_view_count; k++) {

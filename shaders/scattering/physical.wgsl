@@ -32,10 +32,11 @@ fn physical_lobes(material: Material, normalizers: Normalizers, angles: FiberAng
     );
 }
 
-// Radiance under even light: what is scattered to all sides, and what goes straight on.
+// Radiance under even light: of what is scattered to all sides, of what goes straight on, and of what is taken in on the side that is seen.
 struct EvenLight {
     around: vec3f,
     through: vec3f,
+    facing: vec3f,
 }
 
 // `factors`: reflect, reflect at grazing angles, transmit.
@@ -43,5 +44,5 @@ fn physical_ambient(material: Material, factors: vec3f) -> EvenLight {
     let reflected = material.color_r * factors.x + (1.0 - material.color_r) * factors.y;
     let transmitted = (1.0 - material.color_r) * material.color_tt * factors.z;
     let w = material.diffuse_weight;
-    return EvenLight(reflected * (1.0 - w) + material.diffuse * w, transmitted * (1.0 - w));
+    return EvenLight(reflected * (1.0 - w), transmitted * (1.0 - w), material.diffuse * w);
 }
