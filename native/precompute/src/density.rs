@@ -71,7 +71,7 @@ impl SectionDensity {
     }
 
     /// Each ply's fibers per unit area at q, and their slope: how far they move across the section per length along the yarn.
-    pub(crate) fn plies_at(&self, q: DVec2) -> impl Iterator<Item = (f64, DVec2)> {
+    fn plies_at(&self, q: DVec2) -> impl Iterator<Item = (f64, DVec2)> {
         self.ply_directions.iter().map(move |direction| {
             let from_yarn = DVec2::new(direction.dot(q), direction.perp_dot(q));
             let relative = (from_yarn - DVec2::new(self.ply_distance, 0.0)) * self.inverse_half_axes;

@@ -17,7 +17,6 @@ mod lobe;
 mod longitudinal;
 mod material;
 mod multiple;
-mod photon;
 mod physical;
 mod quadrature;
 mod simple;
@@ -32,7 +31,6 @@ pub use frame::FiberFrame;
 pub use longitudinal::{gaussian, gaussian_integral};
 pub use material::{MATERIAL_NAMES, MIN_WIDTH_RAD, Material, MaterialError};
 pub use multiple::cloth_color;
-pub use photon::PhotonScattering;
 pub use physical::{
     AmbientFactors, Normalizers, albedo, fiber_scattering, fresnel, physical_ambient, physical_reflected,
 };

@@ -47,7 +47,7 @@ impl TransportSize {
 /// Light that a yarn's fibers scatter more than once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transport {
-    /// Radiance of the fibers there, by light scattered at least twice in the yarn, per irradiance of a sun on a plane that faces it:
+    /// Radiance of the fibers that are seen there, by light scattered at least twice in the yarn, per irradiance of a sun on a plane that faces it:
     /// `[light longitude][light azimuth][ring][view longitude][view azimuth]`, 1/sr.
     pub radiance: Vec<[f32; 3]>,
     /// The same under radiance 1 from all directions, if all of them had this azimuth: `[light azimuth][ring][view longitude][view azimuth]`.
@@ -75,7 +75,7 @@ impl Transport {
     /// Where the rings end, in outer radii.
     pub const REACH: f64 = 1.2;
 
-    /// Walks about `photons` photons; `proceed` is asked after each of [`Self::batches`] whether to go on.
+    /// Walks the paths of about `photons` photons, backwards; `proceed` is asked after each of [`Self::batches`] whether to go on.
     ///
     /// The same yarn, material and number give the same bits on any number of threads.
     pub fn new(
@@ -94,23 +94,27 @@ impl Transport {
     }
 
     fn from_tally(mut tally: Tally, size: TransportSize) -> Self {
+        let per_longitude = size.light_azimuths * size.places();
+        // Of the light's directions: θ_i ≥ 0 of a longitude, at all azimuths.
+        let solid_angle = |longitude| TAU * (theta(longitude + 1, size).sin() - theta(longitude, size).sin());
+        for (longitude, cells) in tally.cells.chunks_exact_mut(per_longitude).enumerate() {
+            cells.iter_mut().for_each(|sum| *sum *= size.light_azimuths as f64 / solid_angle(longitude));
+        }
+        blur_tally(&mut tally, size);
         share_with_neighbours(&mut tally, size);
-        let places = size.places();
-        let per_longitude = size.light_azimuths * places;
         let mut radiance = Vec::with_capacity(size.cells());
         let mut ambient = vec![DVec3::ZERO; per_longitude];
         for (k, sum) in tally.cells.iter().enumerate() {
             let (longitude, within) = (k / per_longitude, k % per_longitude);
-            let (azimuth, place) = (within / places, within % places);
-            let light = TAU * (theta(longitude + 1, size).sin() - theta(longitude, size).sin());
-            let paths = tally.seen[place] * light / size.light_azimuths as f64;
+            let (azimuth, place) = (within / size.places(), within % size.places());
+            let paths = tally.seen[place];
             let value = if paths > 0.0 { *sum / paths } else { DVec3::ZERO };
             radiance.push(value.as_vec3().to_array());
             // θ_i < 0 is the same, turned by half a turn about a line across the yarn.
             let (ring, outgoing) = (place / size.outgoing(), place % size.outgoing());
             let turned = ((size.light_azimuths - 1 - azimuth) * size.rings + ring + 1) * size.outgoing() - 1 - outgoing;
-            ambient[within] += value * light;
-            ambient[turned] += value * light;
+            ambient[within] += value * solid_angle(longitude);
+            ambient[turned] += value * solid_angle(longitude);
         }
         let ambient = ambient.into_iter().map(|value| value.as_vec3().to_array()).collect();
         let side = 4.0 * PI / size.sides as f64 * tally.on_yarn;
@@ -120,18 +124,56 @@ impl Transport {
     }
 }
 
-/// Paths that tell a place's radiance, at least. A viewer sees few of the inner fibers.
-const LEAST_SEEN: f64 = 30.0;
+/// Share of a cell's light that goes to each of its two neighbours, along azimuths and along longitudes, where cones of narrow lobes are.
+const AZIMUTH_BLUR: f64 = 0.25;
+const LONGITUDE_BLUR: f64 = 0.125;
+
+/// Blurs the directions of lights and viewers: a path falls into one cell of a hundred thousand, and few paths have colours far apart.
+fn blur_tally(tally: &mut Tally, size: TransportSize) {
+    let (azimuths, places) = (size.view_azimuths, size.places());
+    blur(&mut tally.seen, azimuths, 1, AZIMUTH_BLUR, false);
+    blur(&mut tally.seen, size.view_longitudes, azimuths, LONGITUDE_BLUR, false);
+    blur(&mut tally.cells, azimuths, 1, AZIMUTH_BLUR, false);
+    blur(&mut tally.cells, size.view_longitudes, azimuths, LONGITUDE_BLUR, false);
+    blur(&mut tally.cells, size.light_azimuths, places, AZIMUTH_BLUR, true);
+    blur(&mut tally.cells, size.light_longitudes, size.light_azimuths * places, LONGITUDE_BLUR, false);
+}
+
+/// Mixes each of so many cells along an axis, `stride` apart, with a share of each of its neighbours; the ends lose nothing.
+fn blur<T>(values: &mut [T], cells: usize, stride: usize, share: f64, is_circle: bool)
+where
+    T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+{
+    let mut line = Vec::with_capacity(cells);
+    for block in values.chunks_exact_mut(cells * stride) {
+        for first in 0..stride {
+            line.clear();
+            line.extend(block.iter().skip(first).step_by(stride).copied());
+            for k in 0..cells {
+                let (before, after) = if is_circle {
+                    ((k + cells - 1) % cells, (k + 1) % cells)
+                } else {
+                    (k.saturating_sub(1), (k + 1).min(cells - 1))
+                };
+                block[first + k * stride] = line[k] * (1.0 - 2.0 * share) + (line[before] + line[after]) * share;
+            }
+        }
+    }
+}
+
+/// Paths that tell a place's radiance, at least, by the mean over places. A viewer sees few of the inner fibers.
+const LEAST_SEEN: f64 = 0.25;
 
 /// Where few paths began, takes in those of the next ring, from the outermost inwards and back.
 fn share_with_neighbours(tally: &mut Tally, size: TransportSize) {
     let (outgoing, places) = (size.outgoing(), size.places());
+    let least = LEAST_SEEN * tally.seen.iter().sum::<f64>() / places as f64;
     let inwards = (0..size.rings - 1).rev().map(|ring| (ring, ring + 1));
     let outwards = (1..size.rings).map(|ring| (ring, ring - 1));
     for (to, from) in inwards.chain(outwards) {
         for k in 0..outgoing {
             let (to, from) = (to * outgoing + k, from * outgoing + k);
-            if tally.seen[to] < LEAST_SEEN {
+            if tally.seen[to] < least {
                 tally.seen[to] += tally.seen[from];
                 for first in (0..size.cells()).step_by(places) {
                     let more = tally.cells[first + from];
