@@ -4,7 +4,9 @@ use std::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, DVec3};
 use lisle_core::sampling::{hash_combine, hash_u32, unit_from_hash};
-use lisle_core::yarn::{Fiber, FiberTable, Twist, Yarn, YarnPoint, fiber_point};
+use lisle_core::yarn::{Fiber, FiberTable, Twist, Yarn, fiber_point};
+
+use crate::straight;
 
 /// Uniform numbers from a counter.
 pub struct Random(u32);
@@ -106,19 +108,7 @@ impl Sections {
     /// Fibers of one random section, all plies.
     pub fn draw(&self, random: &mut Random) -> Vec<SectionFiber> {
         let length = 1000.0 * random.unit();
-        let at = YarnPoint {
-            position: DVec3::ZERO,
-            velocity: DVec3::Z,
-            tangent: DVec3::Z,
-            normal: DVec3::X,
-            binormal: DVec3::Y,
-            normal_rate: DVec3::ZERO,
-            binormal_rate: DVec3::ZERO,
-            length,
-            length_rate: 1.0,
-            radius: 1.0,
-            radius_rate: 0.0,
-        };
+        let at = straight(length);
         let turned = if self.yarn.plies > 1 { self.yarn.ply_twist.signum() * length * self.twist.ply } else { 0.0 };
         let section_from_yarn = DMat2::from_angle(-TAU * turned);
         let mut fibers = Vec::new();

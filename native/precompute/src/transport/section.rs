@@ -3,12 +3,14 @@
 use std::f64::consts::TAU;
 
 use glam::{DMat2, DVec2, DVec3};
-use lisle_core::yarn::{Fiber, FiberTable, Twist, Yarn, YarnPoint, fiber_point};
+use lisle_core::yarn::{Fiber, FiberTable, Twist, Yarn, fiber_point};
+
+use crate::straight;
 
 /// At most so many fibers are in a section: where a yarn has more, each of some of them is as thick as those that it stands for.
 const MOST_FIBERS: usize = 1024;
 
-/// Periods of a yarn among which sections lie; as long as is needed for loops and hairs to differ.
+/// Of a yarn in which sections lie, outer radii: long enough for loops and hairs to differ.
 const LENGTH: f64 = 1000.0;
 
 /// A kind of yarn, of which sections are made.
@@ -43,19 +45,7 @@ impl Sections {
     /// The section at a share of the yarn, with the flyaways that `seed` decides.
     pub fn cut(&self, share: f64, seed: u32) -> Section {
         let length = LENGTH * share;
-        let at = YarnPoint {
-            position: DVec3::ZERO,
-            velocity: DVec3::Z,
-            tangent: DVec3::Z,
-            normal: DVec3::X,
-            binormal: DVec3::Y,
-            normal_rate: DVec3::ZERO,
-            binormal_rate: DVec3::ZERO,
-            length,
-            length_rate: 1.0,
-            radius: 1.0,
-            radius_rate: 0.0,
-        };
+        let at = straight(length);
         let section_from_yarn = DMat2::from_angle(-self.turn_rate() * length);
         let radius = self.yarn.fiber_radius / self.yarn.outer_radius() * self.step as f64;
         let mut section = Section::default();
