@@ -54,7 +54,12 @@ pub struct SectionFiber {
 impl SectionFiber {
     /// Whether the point lies in the fiber's tangent cylinder, whose radius where the fiber does not thin out is that.
     pub fn holds(&self, q: DVec2, radius: f64) -> bool {
-        (q - self.center).extend(0.0).cross(self.tangent).length() < radius * self.width
+        self.holds_in_space(q.extend(0.0), radius)
+    }
+
+    /// The same of a point before or behind the section.
+    pub fn holds_in_space(&self, point: DVec3, radius: f64) -> bool {
+        (point - self.center.extend(0.0)).cross(self.tangent).length() < radius * self.width
     }
 
     /// Whether a ray in the section from q meets the same cylinder ahead of q.

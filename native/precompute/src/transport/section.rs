@@ -129,3 +129,73 @@ impl Section {
         Some((fiber, least.into()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use lisle_core::sampling::{Random, sphere};
+
+    use super::*;
+    use crate::explicit::SectionFiber;
+
+    impl Section {
+        /// Which fibers hold a point, by the other description of them.
+        fn around(&self, point: DVec3) -> Vec<usize> {
+            let holds = |k: &usize| {
+                let fiber = SectionFiber {
+                    center: self.center(*k),
+                    tangent: self.slope(*k).extend(1.0).normalize(),
+                    width: 1.0,
+                };
+                fiber.holds_in_space(point, self.radius(*k))
+            };
+            (0..self.x.len()).filter(holds).collect()
+        }
+    }
+
+    /// Whether the way of a ray before what it meets leads through fibers that do not hold its start.
+    fn passes_through_others(section: &Section, from: DVec2, direction: DVec3, way: f64) -> bool {
+        const STEPS: u32 = 300;
+        let at = |share: f64| from.extend(0.0) + direction * (way * share);
+        let own = section.around(at(0.0));
+        (1..STEPS).any(|k| {
+            let point = at(f64::from(k) / f64::from(STEPS) * 0.999);
+            section.around(point).iter().any(|fiber| !own.contains(fiber))
+        })
+    }
+
+    #[test]
+    fn a_ray_meets_the_first_fiber_that_it_enters() {
+        let section = Sections::of(&Yarn::preset("silk-1").expect("preset")).cut(0.37, 5);
+        let (mut random, mut ways, mut met) = (Random::new(1, 2, 3), Vec::new(), 0);
+        for _ in 0..200 {
+            let from = DVec2::from_angle(TAU * random.unit()) * random.unit().sqrt();
+            let direction = sphere(random.pair());
+            match section.nearest(from, direction, None, &mut ways) {
+                Some((fiber, way)) => {
+                    met += 1;
+                    let axis = section.slope(fiber).extend(1.0).normalize();
+                    let apart = from.extend(0.0) + direction * way - section.center(fiber).extend(0.0);
+                    let distance = apart.cross(axis).length();
+                    assert!((distance / section.radius(fiber) - 1.0).abs() < 0.02, "on the fiber's surface");
+                    assert!(!passes_through_others(&section, from, direction, way));
+                    assert!(
+                        passes_through_others(&section, from, direction, way * 1.2 + 0.01),
+                        "a check that sees none"
+                    );
+                }
+                None => assert!(!passes_through_others(&section, from, direction, 3.0)),
+            }
+        }
+        assert!((50..200).contains(&met), "{met}");
+    }
+
+    #[test]
+    fn many_fibers_are_few_thick_ones() {
+        let many = Yarn { plies: 8, fibers_per_ply: 2000, ..Yarn::preset("silk-1").expect("preset") };
+        let (many, few) = (Sections::of(&many), Sections::of(&Yarn { fibers_per_ply: 120, ..many }));
+        let width = |section: &Section| (0..section.x.len()).map(|k| section.radius(k)).sum::<f64>();
+        let (many, few) = (many.cut(0.2, 1), few.cut(0.2, 1));
+        assert!(many.x.len() <= MOST_FIBERS && few.x.len() == 960);
+        assert!((width(&many) / width(&few) / (2000.0 / 120.0) - 1.0).abs() < 0.05);
+    }
+}

@@ -289,6 +289,28 @@ mod tests {
     }
 
     #[test]
+    fn blurred_cells_keep_their_sum_and_meet_around_a_circle() {
+        let mut line = [0.0; 12];
+        line[2] = 1.0;
+        let mut circle = line;
+        blur(&mut line, 3, 4, 0.25, false);
+        blur(&mut circle, 3, 4, 0.25, true);
+        assert_eq!([line[2], line[6], line[10]], [0.75, 0.25, 0.0]);
+        assert_eq!([circle[2], circle[6], circle[10]], [0.5, 0.25, 0.25]);
+        assert_eq!([line.iter().sum::<f64>(), circle.iter().sum::<f64>()], [1.0, 1.0]);
+    }
+
+    #[test]
+    fn light_comes_in_nearer_to_the_middle_the_more_often_it_is_scattered() {
+        let yarn = Yarn::preset("cotton-1").expect("preset");
+        let entry = |albedo| made(&yarn, &mirrors(albedo), 20_000).entry;
+        let (dark, white) = (entry(0.2), entry(1.0));
+        println!("{dark:?} {white:?}");
+        assert!(0.0 < white.share && white.share + 0.05 < dark.share && dark.share < 1.1);
+        assert!(0.1 < dark.spread && dark.spread + 0.05 < white.spread && white.spread < 0.6);
+    }
+
+    #[test]
     fn the_lit_side_is_the_brighter_one() {
         let yarn = Yarn::preset("cotton-1").expect("preset");
         let transport = made(&yarn, &lambert(0.95), PHOTONS);
