@@ -225,7 +225,7 @@ mod tests {
     const PHOTONS: u32 = 300_000;
 
     /// Under an even sky, light scattered before makes up for the sky that fibers hide from a point that is seen, by tables of self-shadow and occlusion, which know nothing
-    /// of the walk. (Found: 0.017 to 0.037.)
+    /// of the walk. (Found: 0.012 to 0.035.)
     const FURNACE_BOUND: f64 = 0.05;
 
     /// Of all that viewers at about a right angle see.
